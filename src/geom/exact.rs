@@ -4,13 +4,11 @@
 //! the narrowest arithmetic that holds the determinant then evaluates it: small integers where differences are such
 //! ([`differences`]), 128-bit integers, floating-point expansions (Shewchuk 1997, crate `robust`), or big integers.
 
+use super::integers::decompose;
 use super::{DVec2, DVec3, Sign, differences};
 use num_bigint::BigInt;
 use std::cell::Cell;
 use std::ops::{Add, Mul, Sub};
-
-/// A vector of integers of any size.
-pub(crate) type IntegerVector = [BigInt; 3];
 
 /// The bits that a set of finite numbers uses: each is a multiple of `2^low` and smaller than `2^high` in magnitude.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -81,15 +79,6 @@ impl BitSpan {
             shift => BigInt::from(digits >> -shift),
         }
     }
-}
-
-/// `(m, e)` with `value = m * 2^e` and `|m| < 2^53`; `value` must be finite.
-fn decompose(value: f64) -> (i64, i32) {
-    let bits = value.to_bits();
-    let field = ((bits >> 52) & 0x7ff) as i32;
-    let fraction = (bits & ((1 << 52) - 1)) as i64;
-    let digits = if field == 0 { fraction } else { fraction | (1 << 52) };
-    (if value.is_sign_negative() { -digits } else { digits }, field.max(1) - 1075)
 }
 
 /// True when the signs of determinants of those points that are finite never take big integers. One pass.

@@ -1,11 +1,11 @@
 //! Numbers without rounding: integers as large as needed, their quotients, and the f64 nearby.
 
-pub(super) use crate::geom::IntegerVector;
+pub(super) use crate::geom::integers::{IntegerVector, cross, dot};
 
-use crate::geom::power_of_two;
+use crate::geom::integers;
 use num_bigint::{BigInt, Sign};
 use num_rational::Ratio;
-use num_traits::{ToPrimitive, Zero};
+use num_traits::Zero;
 use std::cmp::Ordering;
 
 /// A quotient of integers of any size.
@@ -24,39 +24,17 @@ pub fn rational(x: f64) -> Rational {
 
 /// `(m, e)` with `x = m 2^e` and an odd `m`, or two zeros.
 pub(super) fn decompose(x: f64) -> (i64, i32) {
-    let bits = x.to_bits();
-    let field = ((bits >> 52) & 0x7ff) as i32;
-    let fraction = (bits & ((1 << 52) - 1)) as i64;
-    let digits = if field == 0 { fraction } else { fraction | 1 << 52 };
+    let (digits, exponent) = integers::decompose(x);
     if digits == 0 {
         return (0, 0);
     }
     let zeros = digits.trailing_zeros() as i32;
-    let digits = digits >> zeros;
-    (if x.is_sign_negative() { -digits } else { digits }, field.max(1) - 1075 + zeros)
+    (digits >> zeros, exponent + zeros)
 }
 
-/// `numerator / denominator` with an error of at most one unit in the last place, for results in the range of normal
-/// numbers; beyond it zero or infinity. The denominator must be positive.
+/// `numerator / denominator`, as [`integers::quotient`] gives it.
 pub(super) fn quotient(numerator: &BigInt, denominator: &BigInt) -> f64 {
-    if numerator.is_zero() {
-        return 0.0;
-    }
-    let shift = 66 - numerator.bits() as i64 + denominator.bits() as i64;
-    let scaled =
-        if shift >= 0 { (numerator << shift) / denominator } else { numerator / (denominator << -shift) };
-    // Between 2^65 and 2^67, so nothing is lost here but the rounding.
-    let mut value = scaled.to_f64().unwrap_or(f64::NAN);
-    let mut left = -shift;
-    while left != 0 {
-        let step = left.clamp(-1000, 1000);
-        value *= power_of_two(step as i32);
-        left -= step;
-        if value == 0.0 || !value.is_finite() {
-            break;
-        }
-    }
-    value
+    integers::quotient(numerator, denominator, 0)
 }
 
 /// The f64 near `x`; see `quotient`.
@@ -84,15 +62,6 @@ pub(super) fn sign(x: &BigInt) -> Ordering {
         Sign::NoSign => Ordering::Equal,
         Sign::Plus => Ordering::Greater,
     }
-}
-
-pub(super) fn cross(a: &IntegerVector, b: &IntegerVector) -> IntegerVector {
-    let part = |i: usize, j: usize| &a[i] * &b[j] - &a[j] * &b[i];
-    [part(1, 2), part(2, 0), part(0, 1)]
-}
-
-pub(super) fn dot(a: &IntegerVector, b: &IntegerVector) -> BigInt {
-    &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
 }
 
 pub(super) fn det(a: &IntegerVector, b: &IntegerVector, c: &IntegerVector) -> BigInt {

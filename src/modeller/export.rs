@@ -4,10 +4,8 @@ use super::exact::rational;
 use super::point::Point;
 use super::solid::Solid;
 use crate::budget::{Budget, Stopped};
-use crate::geom::{DVec2, DVec3, Sign, orient2d};
+use crate::geom::{DVec2, DVec3, Sign, orient2d, triangulate_region};
 use crate::mesh::polyhedron::{FaceId, VertexId};
-use spade::handles::{FixedFaceHandle, FixedVertexHandle, PossiblyOuterTag};
-use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
 /// Most corners of a face; a triangulation of so many takes some 20 ms and cannot be stopped inside.
 const CORNERS_MAX: usize = 1 << 14;
@@ -126,14 +124,10 @@ fn triangulate(solid: &Solid, f: FaceId, loops: &[Vec<u32>], positions: &[DVec3]
         let triangles = (1..corners.len() - 1).map(|i| [corners[0], corners[i], corners[i + 1]]).collect();
         return Some((triangles, Some(corners)));
     }
+    let seen: Vec<Vec<DVec2>> =
+        loops.iter().map(|corners| corners.iter().map(|&v| flat(v)).collect()).collect();
+    let inside = triangulate_region(&seen)?;
     let corners: Vec<u32> = loops.concat();
-    let points: Vec<Point2<f64>> = corners.iter().map(|&v| flat(v)).map(|p| Point2::new(p.x, p.y)).collect();
-    let mut edges = Vec::with_capacity(corners.len());
-    for members in loops {
-        let first = edges.len();
-        edges.extend((0..members.len()).map(|i| [first + i, first + (i + 1) % members.len()]));
-    }
-    let inside = inside_of(points, &edges, loops.len())?;
     Some((inside.into_iter().map(|t| t.map(|i| corners[i])).collect(), None))
 }
 
@@ -155,36 +149,4 @@ fn as_fan(corners: &[u32], flat: &impl Fn(u32) -> DVec2) -> Option<Vec<u32>> {
     let mut turned = corners.to_vec();
     turned.rotate_left(start);
     Some(turned)
-}
-
-/// The triangles to the left of `edges`; `None` when the edges touch or cross.
-fn inside_of(points: Vec<Point2<f64>>, edges: &[[usize; 2]], loop_count: usize) -> Option<Vec<[usize; 3]>> {
-    let count = points.len();
-    let mut has_crossing = false;
-    let mesh = ConstrainedDelaunayTriangulation::<_>::try_bulk_load_cdt(points, edges.to_vec(), |_| {
-        has_crossing = true;
-    })
-    .ok()?;
-    if has_crossing || mesh.num_vertices() != count {
-        return None;
-    }
-    let mut is_inside = vec![false; mesh.num_all_faces()];
-    let mut open: Vec<FixedFaceHandle<PossiblyOuterTag>> = Vec::new();
-    for ends in edges {
-        let [from, to] = ends.map(FixedVertexHandle::from_index);
-        open.push(mesh.get_edge_from_neighbors(from, to)?.face().fix());
-    }
-    let mut triangles = Vec::new();
-    while let Some(face) = open.pop() {
-        let face = mesh.face(face).as_inner()?;
-        if std::mem::replace(&mut is_inside[face.index()], true) {
-            continue;
-        }
-        triangles.push(face.vertices().map(|v| v.index()));
-        open.extend(
-            face.adjacent_edges().iter().filter(|e| !e.is_constraint_edge()).map(|e| e.rev().face().fix()),
-        );
-    }
-    // Euler: a region with h holes and n corners has n + 2 h - 2 triangles.
-    (triangles.len() + 4 == count + 2 * loop_count).then_some(triangles)
 }
