@@ -25,6 +25,13 @@ impl<'a> Cursor<'a> {
         self.bytes.len() - self.at
     }
 
+    /// Number of bytes not taken yet, where they are more than blanks and zero bytes.
+    pub(super) fn behind(&self) -> u64 {
+        let rest = &self.bytes[self.at..];
+        let is_padding = |byte: &u8| *byte == 0 || byte.is_ascii_whitespace();
+        if rest.iter().all(is_padding) { 0 } else { rest.len() as u64 }
+    }
+
     /// The next `N` bytes.
     #[inline]
     pub(super) fn take<const N: usize>(&mut self, expected: &str) -> Result<[u8; N], ReadError> {

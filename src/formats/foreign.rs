@@ -43,7 +43,7 @@ const WORDS: &[(&[u8], &str)] = &[
 pub(super) fn foreign(bytes: &[u8]) -> Option<&'static str> {
     let start = &bytes[..bytes.len().min(LOOKED_AT_BYTES)];
     if start.starts_with(b"PK\x03\x04") || start.starts_with(b"PK\x05\x06") {
-        return Some(archive(start));
+        return Some(archive(bytes));
     }
     if let Some(name) = utf_16(start) {
         return Some(name);
@@ -63,9 +63,12 @@ pub(super) fn foreign(bytes: &[u8]) -> Option<&'static str> {
 }
 
 /// What is in a zip archive, by the names at its start.
-fn archive(start: &[u8]) -> &'static str {
-    let lower = start.to_ascii_lowercase();
-    if has(&lower, b"[content_types].xml") {
+fn archive(bytes: &[u8]) -> &'static str {
+    let lower = bytes[..bytes.len().min(LOOKED_AT_BYTES)].to_ascii_lowercase();
+    // What lists the entries ends with this mark, which a comment may follow.
+    if memchr::memmem::rfind(bytes, b"PK\x05\x06").is_none() {
+        "a zip archive whose end is missing"
+    } else if has(&lower, b"[content_types].xml") {
         "an Office document or another package without a 3MF model"
     } else if has(&lower, b".amf") {
         "compressed AMF"
@@ -111,10 +114,14 @@ mod tests {
         let marked = [&b"\xff\xfe"[..], &utf_16].concat();
         for (bytes, name) in [
             (
-                &b"PK\x03\x04\x14\0\0\0\x08\0________________\x13\0\0\0[Content_Types].xml"[..],
+                &b"PK\x03\x04\x14\0\0\0\x08\0________________\x13\0\0\0[Content_Types].xml___PK\x05\x06"[..],
                 "an Office document or another package without a 3MF model",
             ),
-            (b"PK\x03\x04\x14\0\0\0\x08\0________________\x08\0\0\0part.stl", "a zip archive"),
+            (b"PK\x03\x04\x14\0\0\0\x08\0________________\x08\0\0\0part.stl___PK\x05\x06", "a zip archive"),
+            (
+                b"PK\x03\x04\x14\0\0\0\x08\0________________\x13\0\0\0[Content_Types].xml",
+                "a zip archive whose end is missing",
+            ),
             (b"ISO-10303-21;\nHEADER;", "STEP"),
             (b"Kaydara FBX Binary  \0\x1a\0", "binary FBX"),
             (b"; FBX 7.7.0 project file", "FBX text"),

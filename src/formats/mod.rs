@@ -30,10 +30,12 @@ pub use gltf::two_sided_materials;
 pub use obj::materials::color_faces;
 pub use polygons::split_polygon;
 pub use sniff::sniff;
-pub(crate) use stl::read_binary::BYTES_BEHIND;
 
 use crate::budget::{Budget, Stopped};
 use crate::mesh::Soup;
+
+/// What is left out of a file that goes on behind the faces that its header announces: so many bytes.
+pub(crate) const BYTES_BEHIND: &str = "bytes_behind_triangles";
 
 /// A file format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]

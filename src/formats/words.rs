@@ -45,6 +45,11 @@ impl<'a> Words<'a> {
         &self.bytes[self.at..]
     }
 
+    /// Bytes from the next word on.
+    pub(super) fn behind(&mut self) -> u64 {
+        self.next_word().map_or(0, |word| (word.len() + self.remaining().len()) as u64)
+    }
+
     /// The next word of this line, or nothing at its end.
     #[inline]
     pub(super) fn next_in_line(&mut self) -> Option<&'a [u8]> {

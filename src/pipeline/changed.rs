@@ -81,5 +81,6 @@ impl Changed {
 
 /// Area of these triangles of a mesh, in square units of its coordinates.
 pub(super) fn area_of(mesh: &Soup, triangles: &[u32]) -> f64 {
-    triangles.iter().map(|&t| triangle_area(mesh.corners(t))).sum()
+    // From a zero without a sign, which the sum of nothing has.
+    triangles.iter().fold(0.0, |area, &t| area + triangle_area(mesh.corners(t)))
 }

@@ -182,7 +182,8 @@ pub(super) fn judge_alone(
 }
 
 /// How far the corners of triangles moved, where each triangle of `result` is one of `input` and all that have an area are
-/// still there; `None` otherwise. No place of such surfaces is farther from the other than that.
+/// still there; `None` otherwise. No place of such surfaces is farther from the other than that. Polygons of which something moved
+/// may be divided into other triangles.
 fn largest_move(
     input: &Soup,
     result: &Soup,
@@ -200,6 +201,9 @@ fn largest_move(
                 return Ok(None);
             }
             most = most.max(move_of(input.corners(origin), result.corners(t as u32)));
+        }
+        if most > 0.0 && !input.polygons.faces.is_empty() {
+            return Ok(None);
         }
         let gone: Vec<u32> = (0..input.triangles.len() as u32).filter(|&t| !stays[t as usize]).collect();
         Ok((area_of(input, &gone) == 0.0).then_some(most))

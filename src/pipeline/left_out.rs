@@ -15,11 +15,13 @@ pub(super) fn left_out(
 ) -> Option<Action> {
     let colors = lost_colors(before, after, encoding);
     let has_lost_all = colors[0].1 > 0;
+    let opacities = Some(("opacities", lost_opacities(before, after))).filter(|&(_, count)| count > 0);
     let lost = lost.iter().copied().filter(|&(name, _)| !(has_lost_all && name == "colors_at_seams"));
     let colors = colors.into_iter().filter(|&(_, count)| count > 0);
     let objects = if after.objects.is_empty() { before.objects.in_use() } else { 0 };
     let objects = (objects > 0).then_some(("objects", objects));
-    let changes: Vec<_> = before.left_out.iter().copied().chain(lost).chain(objects).chain(colors).collect();
+    let changes: Vec<_> =
+        before.left_out.iter().copied().chain(lost).chain(objects).chain(colors).chain(opacities).collect();
     if changes.is_empty() {
         return None;
     }
@@ -31,9 +33,9 @@ pub(super) fn left_out(
 /// What is said of a file that goes on where its mesh has ended.
 pub(super) fn remark_on_end(soup: &Soup) -> Option<String> {
     let (_, bytes) = soup.left_out.iter().find(|(what, _)| *what == BYTES_BEHIND)?;
-    let triangles = soup.triangles.len();
+    let faces = soup.face_count;
     Some(format!(
-        "the file goes on after the triangles that the header of the STL announces ({triangles}); what follows was not read ({bytes} bytes)"
+        "the file goes on after the faces that its header announces ({faces}); what follows was not read ({bytes} bytes)"
     ))
 }
 
@@ -72,6 +74,22 @@ fn lost_colors(before: &Soup, after: &Soup, encoding: Encoding) -> [(&'static st
     let of_vertices = if has(&after.vertex_colors) || at_corners { 0 } else { count(&before.vertex_colors) };
     let of_faces = if has(&after.face_colors) || by_name { 0 } else { count(&before.face_colors) };
     [("vertex_colors", of_vertices), ("face_colors", of_faces)]
+}
+
+/// The colours that are not opaque where `after` has colours, none of which says how opaque it is.
+fn lost_opacities(before: &Soup, after: &Soup) -> u64 {
+    let opacity = |color: &Color| match *color {
+        Color::Bytes(_, alpha) => alpha.map(|alpha| f32::from(alpha) / 255.0),
+        Color::Floats(_, alpha) | Color::Linear(_, alpha) => alpha,
+        Color::Index(_) => None,
+    };
+    let lost = |before: &[Option<Color>], after: &[Option<Color>]| {
+        let is_lost =
+            after.iter().any(Option::is_some) && !after.iter().flatten().any(|c| opacity(c).is_some());
+        let is_translucent = |color: &&Color| opacity(color).is_some_and(|opacity| opacity != 1.0);
+        if is_lost { before.iter().flatten().filter(is_translucent).count() as u64 } else { 0 }
+    };
+    lost(&before.vertex_colors, &after.vertex_colors) + lost(&before.face_colors, &after.face_colors)
 }
 
 #[cfg(test)]
@@ -138,6 +156,23 @@ mod tests {
         assert_eq!(told(&soup, Format::Obj), []);
         soup.materials.libraries.clear();
         assert_eq!(told(&soup, Format::Obj), [("face_colors", 1)]);
+    }
+
+    #[test]
+    fn colours_that_a_format_holds_without_their_opacity_are_counted() {
+        let color = |alpha: u8| Some(Color::Bytes([9, 8, 7], Some(alpha)));
+        let soup = Soup {
+            positions: vec![DVec3::ZERO, DVec3::X, DVec3::Y],
+            triangles: vec![[0, 1, 2]],
+            face_count: 1,
+            vertex_colors: vec![color(200), color(255), color(0)],
+            ..Soup::default()
+        };
+        assert_eq!(told(&soup, Format::Obj), [("opacities", 2)]);
+        for format in [Format::Ply, Format::Off, Format::Glb] {
+            assert_eq!(told(&soup, format), [], "{format:?}");
+        }
+        assert_eq!(told(&soup, Format::Stl), [("vertex_colors", 3)], "which tells it all");
     }
 
     #[test]

@@ -92,11 +92,15 @@ fn overhang_angle(figures: &Figures, policy: &PrintingPolicy) -> Option<f64> {
 
 /// A figure that may not be small.
 fn below(code: CheckCode, measured: Option<f64>, limit: Limit, witnesses: Vec<PrintingWitness>) -> Check {
-    let is_below = |bound: Option<f64>| matches!((measured, bound), (Some(m), Some(b)) if m < b);
+    let is_below =
+        |bound: Option<f64>| matches!((measured, bound), (Some(m), Some(b)) if m < b * (1.0 - ROUNDING));
     let status = status(is_below(limit.warning), is_below(limit.error));
     let witnesses = if status == Status::Ok { Vec::new() } else { witnesses };
     Check { code, status: Some(status), measured, limit, witnesses }
 }
+
+/// What measures are rounded by at most, as a share of them: a wall as thick as the limit is not below it.
+const ROUNDING: f64 = 1e-9;
 
 /// Area of what is too thin, as a multiple of the square of the limit, up to which it is no more than a tip: that of a
 /// cone with an angle of 30 degrees is 3 where it is below the limit. Sharper ones are pins.

@@ -93,7 +93,8 @@ fn cavities(surface: &WeldedSurface<'_>, mut hollows: Vec<&MeshPart>, witnesses:
     let witness = |part: &&MeshPart| surface.witness_in_middle(part.first, -part.volume);
     Cavities {
         count: hollows.len() as u64,
-        volume: hollows.iter().map(|part| -part.volume).sum(),
+        // From a zero without a sign, which the sum of nothing has.
+        volume: hollows.iter().fold(0.0, |volume, part| volume - part.volume),
         witnesses: hollows.iter().take(witnesses).map(witness).collect(),
     }
 }

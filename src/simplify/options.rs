@@ -5,7 +5,7 @@ use crate::geom::{Aabb, DVec3};
 /// How far to simplify.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Target {
-    /// To at most this many faces.
+    /// To at most this many triangles.
     Faces(usize),
     /// To at most this share (0 to 1) of the faces there were.
     Ratio(f64),

@@ -15,9 +15,9 @@ const TARGETS_MAX: usize = 16;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TargetSpec {
-    /// To at most this many faces.
+    /// To at most this many triangles.
     Faces(#[serde(deserialize_with = "whole")] u32),
-    /// To at most this share of the faces, from 0 to 1.
+    /// To at most this share of the triangles, from 0 to 1.
     Ratio(f64),
     /// As far as no collapse has an error above this, in millimetres.
     ErrorMm(f64),
@@ -66,8 +66,8 @@ impl PartialSchema for TargetSpec {
         let error = number(Type::Number).minimum(Some(0)).maximum(Some(1e30));
         let targets = OneOfBuilder::new()
             .description(Some("How far to simplify: one member."))
-            .item(one("faces", faces, "To at most this many faces."))
-            .item(one("ratio", ratio, "To at most this share of the faces."))
+            .item(one("faces", faces, "To at most this many triangles."))
+            .item(one("ratio", ratio, "To at most this share of the triangles."))
             .item(one("error_mm", error, "As far as no collapse has an error above this, in millimetres."));
         RefOr::T(Schema::OneOf(targets.build()))
     }

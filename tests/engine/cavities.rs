@@ -168,3 +168,18 @@ fn a_sheet_with_two_sides_beside_a_body_and_a_body_drawn_twice_inside_out_are_no
     let (_, found) = figures(&answer);
     assert!((found - 2000.0).abs() < 10.0, "{found}");
 }
+
+#[test]
+fn two_cavities_with_a_wall_without_thickness_between_them_stay() {
+    let room = |x: f64, size: [f64; 3]| cuboid(size).moved([x, 1.0, 1.0]).inside_out();
+    let outer = || cuboid([10.0; 3]);
+    // The wall is of the same triangles twice, or of a smaller face on a larger one.
+    let same = outer().with(&room(1.0, [4.0, 8.0, 8.0])).with(&room(5.0, [4.0, 8.0, 8.0]));
+    let smaller = outer().with(&room(1.0, [4.0, 8.0, 8.0])).with(&room(5.0, [4.0, 4.0, 8.0]));
+    for (file, expected) in [(same, 1000.0 - 512.0), (smaller, 1000.0 - 384.0)] {
+        for file in [file.clone(), file.clone().inside_out()] {
+            let (shells, found) = figures(&repaired(&file));
+            assert!(shells == 2 && (found - expected).abs() < 1e-6, "{shells} {found}");
+        }
+    }
+}

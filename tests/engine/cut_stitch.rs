@@ -4,7 +4,8 @@ use meshmend::budget::Budget;
 use meshmend::formats::{Encoding, Format, ReadOptions, read};
 use meshmend::mesh::{CutMethod, EdgeGroups, Soup, singular_vertices, twins};
 use meshmend::pipeline::{
-    Answer, CutStitchChoices, JoinedEdges, Operation, Options, Outcome, Refusal, Require, Stitching, run,
+    Answer, CutStitchChoices, Failure, Fidelity, JoinedEdges, Operation, Options, Outcome, Refusal, Require,
+    Stitching, run,
 };
 use std::fmt::Write as _;
 
@@ -520,4 +521,33 @@ fn faces_with_the_same_vertices_in_another_order_are_no_copies_and_a_triangle_is
         let copies = count(&answer, "drop-duplicates", "copies_dropped");
         assert_eq!(copies, faces.lines().count() as u64 - left, "{faces}");
     }
+}
+
+#[test]
+fn quads_of_which_one_is_turned_stay_where_they_are() {
+    let (points, quads) = (cube([0.0; 3]).0, "5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6");
+    let vertices: String = points.iter().map(|[x, y, z]| format!("v {x} {y} {z}\n")).collect();
+    for first in ["1 3 4 2", "1 2 4 3"] {
+        let answer =
+            cut_stitch(format!("{vertices}f {first}\nf {quads}\n").as_bytes(), CutStitchChoices::default());
+        let fidelity = answer.report.fidelity.as_ref().unwrap();
+        assert_eq!(fidelity.word, Fidelity::Exact, "{first}: {fidelity:?}");
+    }
+}
+
+#[test]
+fn an_edge_to_cut_must_be_one_of_the_file() {
+    let bytes = obj(&cube([0.0; 3]));
+    let cut = |edge: [u32; 2]| {
+        let cut_stitch = CutStitchChoices { chosen: vec![edge], ..CutStitchChoices::default() };
+        let options = Options { cut_stitch, ..Options::default() };
+        match run(Operation::CutStitch, bytes.as_bytes(), &options, &Budget::unlimited()) {
+            Err(Failure::NotApplicable { option: "cut_edges", reason }) => reason,
+            found => format!("{:?}", found.unwrap().report.outcome),
+        }
+    };
+    assert_eq!(cut([0, 1]), "Some(CutStitched)");
+    assert_eq!(cut([1, 0]), cut([0, 1]));
+    assert!(cut([0, 7]).contains("the edge from vertex 0 to vertex 7, which no face has"));
+    assert!(cut([0, 8]).contains("vertex 8"));
 }

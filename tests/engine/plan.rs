@@ -9,8 +9,8 @@ use meshmend::analysis::DefectCode;
 use meshmend::budget::Budget;
 use meshmend::formats::Encoding;
 use meshmend::pipeline::{
-    Answer, ChosenPlan, ChosenRemedy, CutStitchChoices, Failure, Operation, Options, Outcome, PlanMismatch,
-    Proposal, Refusal, Remedy, Require, SimplifyChoices, Step, run,
+    Answer, ChosenPlan, ChosenRemedy, CutStitchChoices, Failure, FidelityLimits, Operation, Options, Outcome,
+    PlanMismatch, Proposal, Refusal, Remedy, Require, SimplifyChoices, Step, run,
 };
 use meshmend::repair::nest::NestingPolicy;
 use meshmend::simplify::Target;
@@ -143,6 +143,35 @@ fn a_cavity_of_a_valid_solid_is_filled_only_when_that_is_asked() {
     assert_eq!(answer.report.outcome, Some(Outcome::Repaired));
     assert_eq!(answer.report.certificate.as_ref().unwrap().shells.len(), 1);
     assert_eq!(answer.report.after.unwrap().measures.volume, Some(27.0));
+}
+
+#[test]
+fn what_lies_inside_is_filled_also_behind_an_opening_and_where_bodies_meet() {
+    let outer = || cuboid([10.0; 3]);
+    let room = |at: [f64; 3]| cuboid([4.0; 3]).moved(at).inside_out();
+    let mut open = outer().with(&room([3.0; 3]));
+    open.triangles.drain(..2);
+    let rooms_meet = outer().with(&room([2.0; 3])).with(&room([4.0; 3]));
+    let bodies_meet = outer().with(&room([3.0; 3])).with(&outer().moved([7.0, 1.0, 1.0]));
+    for (file, expected) in [(open, 1000.0), (rooms_meet, 1000.0), (bodies_meet, 2000.0 - 243.0)] {
+        let options = Options { nesting: NestingPolicy::Fill, ..coarse() };
+        let answer = repair(&encode(&file, Encoding::Obj), &options).unwrap();
+        assert_eq!(answer.report.outcome, Some(Outcome::Repaired), "{expected}");
+        assert_eq!(answer.report.certificate.as_ref().unwrap().shells.len(), 1);
+        let volume = answer.report.after.unwrap().measures.volume.unwrap();
+        assert!((volume - expected).abs() < 1e-6, "{volume} {expected}");
+    }
+}
+
+#[test]
+fn a_cavity_that_may_not_be_filled_is_not_rebuilt_instead() {
+    let hollow = cuboid([10.0; 3]).with(&cuboid([4.0; 3]).moved([3.0; 3]).inside_out());
+    let limits = FidelityLimits { volume_change_max: Some(0.01), ..FidelityLimits::default() };
+    let options = Options { nesting: NestingPolicy::Fill, limits, ..coarse() };
+    let answer = repair(&encode(&hollow, Encoding::Obj), &options).unwrap();
+    assert_eq!(answer.report.outcome, Some(Outcome::Refused));
+    let refusal = answer.report.refusal.unwrap();
+    assert!(matches!(refusal, Refusal::VolumeChangeBeyondLimit { .. }), "{refusal:?}");
 }
 
 #[test]

@@ -82,7 +82,10 @@ impl<'a> ContainerContent<'a> {
             let why = why.split(" at line ").next().unwrap_or_default().to_owned();
             match error.classify() {
                 serde_json::error::Category::Eof => ReadError::truncated(Place::Byte(byte as u64), expected),
-                _ => ReadError::unparseable(Place::Byte(byte as u64), why, expected),
+                _ => {
+                    let found = format!("text that is no JSON ({why})");
+                    ReadError::unparseable(Place::Byte(byte as u64), found, expected)
+                }
             }
         })?;
         Ok((tree, charge))

@@ -6,7 +6,7 @@ use crate::formats::colors::note_color;
 use crate::formats::faces::Faces;
 use crate::formats::numbers::{coordinate, index, integer};
 use crate::formats::words::{Dialect, Words};
-use crate::formats::{ReadError, ReadOptions};
+use crate::formats::{BYTES_BEHIND, ReadError, ReadOptions};
 use crate::geom::DVec3;
 use crate::mesh::{Color, Places, Soup};
 
@@ -31,7 +31,14 @@ pub(in crate::formats) fn read(
     let (faces, face_lines, face_colors) = read_faces(&mut words, faces, options, budget)?;
     let soup = faces.into_soup(positions, &options.limits, budget)?;
     let places = Places { face_lines, vertex_lines };
-    Ok(Soup { places, vertex_colors: vertex_colors.finish(), face_colors: face_colors.finish(), ..soup })
+    let left_out = Some((BYTES_BEHIND, words.behind())).filter(|&(_, bytes)| bytes > 0);
+    Ok(Soup {
+        places,
+        vertex_colors: vertex_colors.finish(),
+        face_colors: face_colors.finish(),
+        left_out: left_out.into_iter().collect(),
+        ..soup
+    })
 }
 
 /// What stands before the vertices.
@@ -235,6 +242,15 @@ mod tests {
             let soup = read(&format!("{header}{BODY}")).unwrap();
             assert_eq!(soup.triangles, [[0, 1, 2], [0, 2, 3]], "{header}");
             assert!(soup.vertex_colors.is_empty() && soup.face_colors.is_empty());
+        }
+    }
+
+    #[test]
+    fn what_stands_behind_the_announced_faces_is_counted() {
+        let left_out = |text: &str| read(text).unwrap().left_out;
+        assert_eq!(left_out(&format!("OFF 4 1\n{BODY}")), [(BYTES_BEHIND, 8)]);
+        for rest in ["", "\n", " # a comment\n\n"] {
+            assert_eq!(left_out(&format!("OFF 4 2\n{BODY}{rest}")), [], "{rest}");
         }
     }
 

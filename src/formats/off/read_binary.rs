@@ -7,7 +7,7 @@ use crate::formats::cursor::Cursor;
 use crate::formats::faces::Faces;
 use crate::formats::numbers::index;
 use crate::formats::words::{Dialect, Words};
-use crate::formats::{ReadError, ReadOptions};
+use crate::formats::{BYTES_BEHIND, ReadError, ReadOptions};
 use crate::geom::DVec3;
 use crate::mesh::{Color, Soup};
 
@@ -35,7 +35,8 @@ pub(in crate::formats) fn read(
     let (positions, vertex_colors) = read_vertices(&mut cursor, vertex_count, header, budget)?;
     let (faces, face_colors) = read_faces(&mut cursor, face_count, options, budget)?;
     let soup = faces.into_soup(positions, &options.limits, budget)?;
-    Ok(Soup { vertex_colors, face_colors, ..soup })
+    let left_out = Some((BYTES_BEHIND, cursor.behind())).filter(|&(_, bytes)| bytes > 0);
+    Ok(Soup { vertex_colors, face_colors, left_out: left_out.into_iter().collect(), ..soup })
 }
 
 fn read_vertices(

@@ -7,7 +7,7 @@ use crate::budget::{Budget, CHECK_EVERY, Charge};
 use crate::formats::colors::note_color;
 use crate::formats::faces::Faces;
 use crate::formats::numbers::index;
-use crate::formats::{Precision, ReadError, ReadOptions};
+use crate::formats::{BYTES_BEHIND, Precision, ReadError, ReadOptions};
 use crate::geom::DVec3;
 use crate::mesh::{Color, Places, Segment, Soup};
 
@@ -50,8 +50,9 @@ fn read_body(
     let soup = mesh.faces.into_soup(mesh.positions, &options.limits, budget)?;
     let PlyMesh { vertex_colors, face_colors, places, mut segments, .. } = mesh;
     segments.retain(|segment| segment.ends.iter().all(|&v| (v as usize) < soup.positions.len()));
-    let further = source.further_properties;
-    let left_out = if further > 0 { vec![("further_properties", further)] } else { Vec::new() };
+    let left_out =
+        [("further_properties", source.further_properties), (BYTES_BEHIND, source.values.behind())];
+    let left_out = left_out.into_iter().filter(|&(_, count)| count > 0).collect();
     Ok(Soup { vertex_colors, face_colors, places, segments, left_out, ..soup })
 }
 
@@ -327,7 +328,7 @@ mod tests {
     #[test]
     fn an_element_without_items_needs_no_properties() {
         assert_eq!(read(&format!("{XYZ}element face 0\n"), "0 0 0 1 0 0 0 1 0").unwrap().positions.len(), 3);
-        assert!(error(&format!("{XYZ}element face 1\n"), TRIANGLE).contains("element face without"));
+        assert!(error(&format!("{XYZ}element face 1\n"), TRIANGLE).contains("found element face; expected"));
     }
 
     const TRIANGLE: &str = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
@@ -406,6 +407,21 @@ mod tests {
     }
 
     #[test]
+    fn what_stands_behind_the_announced_elements_is_counted() {
+        let left_out = |bytes: &[u8]| read_bytes(bytes).unwrap().left_out;
+        let text = format!("ply\nformat ascii 1.0\n{XYZ}{FACE}end_header\n{TRIANGLE}\n");
+        assert_eq!(left_out(text.as_bytes()), []);
+        assert_eq!(left_out(format!("{text}3 0 2 1\n").as_bytes()), [(BYTES_BEHIND, 8)]);
+        let header = format!("ply\nformat binary_little_endian 1.0\n{XYZ}{FACE}end_header\n");
+        let vertices = [0.0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].map(f32::to_le_bytes).concat();
+        let face = [vec![3], [0u32, 1, 2].map(u32::to_le_bytes).concat()].concat();
+        let whole = [header.as_bytes(), &vertices, &face].concat();
+        assert_eq!(left_out(&whole), []);
+        assert_eq!(left_out(&[&whole[..], b"\n\0"].concat()), [], "padding");
+        assert_eq!(left_out(&[whole, face].concat()), [(BYTES_BEHIND, 13)]);
+    }
+
+    #[test]
     fn edges_are_segments_where_they_name_vertices_that_are_there() {
         let edges = "element edge 3\nproperty int vertex1\nproperty uchar red\nproperty int vertex2\n";
         let soup =
@@ -444,7 +460,7 @@ mod tests {
         );
         assert!(
             error("element vertex 1\nproperty float x\n", "0")
-                .starts_with("line 3: found element vertex without")
+                .starts_with("line 3: found element vertex; expected")
         );
         assert!(
             error("element face 1\nproperty int vertex_indices\n", "0")

@@ -133,6 +133,6 @@ impl PropertyRoles {
 }
 
 fn lacks(element: &PlyElement<'_>, expected: &str) -> ReadError {
-    let found = format!("element {} without", String::from_utf8_lossy(element.name));
-    ReadError::unparseable(Place::Line(element.line), found, expected)
+    let found = format!("element {}", String::from_utf8_lossy(element.name));
+    ReadError::unparseable(Place::Line(element.line), found, format!("{expected} in it"))
 }

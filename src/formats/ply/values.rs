@@ -19,6 +19,8 @@ pub(super) trait ValueReader {
     fn place(&self) -> Place;
     /// Number of bytes not read yet.
     fn remaining(&self) -> usize;
+    /// Number of bytes behind what was read, where they are more than blanks.
+    fn behind(&mut self) -> u64;
     /// The next value is the first of an item.
     fn begin_item(&mut self);
     /// Line of the first value of the item, in text.
@@ -83,6 +85,10 @@ impl ValueReader for Ascii<'_> {
         self.words.remaining().len()
     }
 
+    fn behind(&mut self) -> u64 {
+        self.words.behind()
+    }
+
     fn begin_item(&mut self) {
         self.is_first = true;
     }
@@ -145,6 +151,10 @@ impl<const BIG: bool> ValueReader for Binary<'_, BIG> {
 
     fn remaining(&self) -> usize {
         self.0.remaining()
+    }
+
+    fn behind(&mut self) -> u64 {
+        self.0.behind()
     }
 
     fn begin_item(&mut self) {}

@@ -2,7 +2,7 @@
 
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::formats::faces::Faces;
-use crate::formats::{Place, ReadError, ReadOptions};
+use crate::formats::{BYTES_BEHIND, Place, ReadError, ReadOptions};
 use crate::geom::DVec3;
 use crate::mesh::Soup;
 use crate::par;
@@ -13,9 +13,6 @@ const TRIANGLE_BYTES: usize = 50;
 /// The normal stands before the corners.
 const NORMAL_BYTES: usize = 12;
 const CORNER_BYTES: usize = 12;
-
-/// What is left out of a file that goes on behind the triangles that its header announces: so many bytes.
-pub(crate) const BYTES_BEHIND: &str = "bytes_behind_triangles";
 
 /// Length of the file that the header of `bytes` announces, if there is a whole header.
 pub(in crate::formats) fn announced_length(bytes: &[u8]) -> Option<u64> {

@@ -19,6 +19,7 @@ use crate::pipeline::size::diagonal;
 use crate::pipeline::step::Step;
 use crate::pipeline::{Action, Failure, FidelityLimits, Options, Refusal, Require};
 use crate::repair::fill::HoleReport;
+use crate::repair::nest::NestingPolicy;
 use crate::repair::noise::Noise;
 use crate::repair::snap::gap_between_rims;
 use crate::repair::{Draft, Effects, noise};
@@ -408,7 +409,11 @@ impl Certified {
         let measure =
             |looks_out| fidelity(&attempt, &candidate, looks_out, attempt.covered(looks_out).as_ref(), climb);
         let fidelity = measure(attempt.hides_more)?;
-        let may_be_seen = attempt.closes_openings && !attempt.hides_more && fidelity.losses.hidden_area > 0.0;
+        // What is inside of the outermost shells goes as chosen, also behind openings.
+        let may_be_seen = attempt.closes_openings
+            && !attempt.hides_more
+            && climb.choices.nesting != NestingPolicy::Fill
+            && fidelity.losses.hidden_area > 0.0;
         // Where that is too much work, patches stay in the way.
         let seen_past = || if may_be_seen { measure(true) } else { Ok(fidelity) };
         let mut as_seen = climb.budget.within_part(HIDDEN_PART, seen_past)?.unwrap_or(fidelity);

@@ -10,7 +10,7 @@ use crate::pipeline::repair_choices::Walls;
 use crate::pipeline::size::diagonal;
 use crate::pipeline::step::Step;
 use crate::pipeline::{Failure, Refusal, Require};
-use crate::repair::nest::NestingPolicy;
+use crate::repair::nest::{NestOptions, NestingPolicy};
 use crate::winding::OpenShells;
 
 /// Where triangles of the file meet.
@@ -61,7 +61,7 @@ fn may_unite(climb: &Climb<'_>, situation: &Situation) -> bool {
     let choices = climb.choices;
     !situation.has_tried_uniting
         && choices.unites
-        && choices.nesting == NestingPolicy::AsOriented
+        && choices.nesting != NestingPolicy::Alternate
         && choices.shells.is_empty()
 }
 
@@ -109,6 +109,26 @@ fn unite(climb: &Climb<'_>, situation: &mut Situation) -> Result<Option<RungResu
 }
 
 impl Climb<'_> {
+    /// Unites bodies where a certified result lost much without both of two copies of opposite direction. A wall between two cavities
+    /// bounds nothing: a union knows what it leaves out, where the loss of it would have the surface rebuilt and the cavities filled.
+    pub(super) fn with_union_if_closer(
+        &self,
+        closed: Box<Certified>,
+        situation: &mut Situation,
+    ) -> Result<Box<Certified>, Failure> {
+        let limits = &self.options.limits;
+        let has_lost = !closed.fidelity.passes(limits);
+        if !has_lost || !closed.attempt.effects.cancelled_opposite_pairs || !may_unite(self, situation) {
+            return Ok(closed);
+        }
+        match unite(self, situation)? {
+            Some(RungResult::Certified(united)) if !closed.fidelity.is_no_worse(&united.fidelity, limits) => {
+                Ok(united)
+            }
+            _ => Ok(closed),
+        }
+    }
+
     /// The kinds of bodies to try, in their order. Where no solid is required, nothing is invented to make one.
     fn kinds(&self, openness: Openness) -> Vec<Uniting> {
         let mut kinds = vec![Uniting::AsDrawn];
@@ -225,6 +245,10 @@ impl Climb<'_> {
         let mut roundings = ROUNDINGS_MAX;
         let mut tries = tries.into_iter();
         loop {
+            if self.choices.nesting == NestingPolicy::Fill {
+                let fill = NestOptions { policy: NestingPolicy::Fill, ..NestOptions::default() };
+                self.go_on(&mut attempt, &[Step::Nest(fill)])?;
+            }
             let judged = self.judge(&attempt)?;
             if judged.fails_in_f32() {
                 if !self.choices.rounds || roundings == 0 {

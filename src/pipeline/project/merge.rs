@@ -107,7 +107,7 @@ pub(super) fn left_out(project: &Project, encoding: Encoding) -> Vec<String> {
     let (names, further_places) = if has_objects { (0, 0) } else { (names, places.saturating_sub(1)) };
     let lost = [
         (names, format!("names of parts ({names})")),
-        (further_places, format!("build items ({places})")),
+        (further_places, format!("places of parts ({places})")),
         (properties, format!("{of_properties} that {properties} triangles state")),
         (marks, format!("paint and other marks of {marks} triangles")),
         (1, "what it holds beside meshes, such as pictures, metadata and settings".to_owned()),

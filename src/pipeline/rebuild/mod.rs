@@ -20,7 +20,7 @@ use crate::geom::{Aabb, DVec3};
 use crate::mesh::Soup;
 use crate::repair::duplicates::OppositePairs;
 use crate::repair::fill::FillOptions;
-use crate::repair::nest::{self, NestOptions};
+use crate::repair::nest::{self, NestOptions, NestingPolicy};
 use crate::repair::{Draft, NEW, Selection, weld};
 use crate::simplify::Mode;
 use crate::winding::{OpenShells, WindingSolid};
@@ -238,7 +238,9 @@ impl LatticeSearch<'_> {
             }
         }
         let mut best = best.ok_or_else(|| refused(Refusal::OverBudget { units: budget.work_used() }))?;
-        let is_open = self.before.is_none_or(|before| before.counts.boundary_edges > 0);
+        // What is inside of the outermost shells goes as chosen.
+        let fills = self.options.nesting == NestingPolicy::Fill;
+        let is_open = !fills && self.before.is_none_or(|before| before.counts.boundary_edges > 0);
         if is_open && best.fidelity.losses.hidden_area > 0.0 {
             let (made, origins) = (best.candidate.soup(), best.candidate.origins(&best.origins));
             let look = || original.with_outlook(budget)?.measure(made, &origins, budget);
@@ -378,7 +380,13 @@ impl Rebuilding<'_> {
 
     fn wrap(&self, draft: &Draft) -> Result<Wrapped, NoCandidate> {
         let options = &self.wrap_options;
-        let wrap = || wrap::wrap(&draft.positions, &draft.triangles, options, self.budget);
+        let wrap = || {
+            let wrapped = wrap::wrap(&draft.positions, &draft.triangles, options, self.budget)?;
+            match self.options.nesting {
+                NestingPolicy::Fill => Ok(filled(wrapped, self.budget)?),
+                NestingPolicy::AsOriented | NestingPolicy::Alternate => Ok(wrapped),
+            }
+        };
         self.budget.stage(Stage::Repair, wrap).map_err(|error| match error {
             WrapError::Stopped(stopped) => stopped.into(),
             WrapError::Empty => NoCandidate::Refused(Refusal::NothingToRepair),
@@ -438,6 +446,30 @@ impl Rebuilding<'_> {
         }
         Candidate::write(soup, self.input, self.encoding, Depth::FirstViolation, self.budget)
     }
+}
+
+/// The outermost shells of a wrap.
+fn filled(wrapped: Wrapped, budget: &Budget) -> Result<Wrapped, Stopped> {
+    let Wrapped { positions, unfitted, triangles, account } = wrapped;
+    // What was fitted may meet itself.
+    let surest = if unfitted.is_empty() { &positions } else { &unfitted };
+    let mut draft = Draft {
+        positions: surest.clone(),
+        vertex_origin: (0..surest.len() as u32).collect(),
+        triangle_origin: (0..triangles.len() as u32).collect(),
+        triangles,
+        ..Draft::default()
+    };
+    let fill = NestOptions { policy: NestingPolicy::Fill, is_embedded: true, ..NestOptions::default() };
+    nest::nest(&mut draft, &fill, budget)?;
+    let kept =
+        |of: &[DVec3]| draft.vertex_origin.iter().filter_map(|&v| of.get(v as usize).copied()).collect();
+    Ok(Wrapped {
+        positions: kept(&positions),
+        unfitted: kept(&unfitted),
+        triangles: draft.triangles,
+        account,
+    })
 }
 
 /// The wrap as a step of the plan, with the reading that it took.

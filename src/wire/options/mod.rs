@@ -73,12 +73,12 @@ options! {
     fill_holes: FillHoles, in REPAIR,
         "Whether repair fills simple holes. Default: simple.";
     open_shells: OpenShells, in REPAIR,
-        "Whether open surfaces are closed or become walls; auto goes by whether each of them mostly bounds a volume. Default: auto.";
+        "How surfaces are read that holes are left in, or that must be rebuilt: as closed, or as walls; auto goes by whether each of them mostly bounds a volume. The remedy thicken of a plan makes walls of open surfaces in the first place. Default: auto.";
     wrap_cells: u32 = OptionKind::Integer { min: 16, max: 1024 }, in REPAIR,
         "Cells along the longest side of a surface that repair must rebuild. Default: by the effort and its area.";
     effort: Effort, in REPAIR,
         "How fine and so how long to try where repair must rebuild the surface. Default: normal.";
-    wall_mm: f64, in TOUCHING,
+    wall_mm: f64 = OptionKind::Number { min: 1e-6, max: 1e30 }, in TOUCHING,
         "Thickness of the walls that open surfaces become in a repair, and of the necks of contact=join, in millimetres. Default: 0.4 % of the diagonal.";
     recenter: bool, in REPAIR,
         "Move a mesh that is too far from the origin for float32 there, instead of refusing it. Default: false.";
@@ -93,9 +93,9 @@ options! {
     plan: PlanRequest, in REPAIR,
         "What repair does about each defect: the plan that /v1/plan proposes, edited, or that of an earlier repair, whose steps then run again. Default: as /v1/plan proposes.";
     faces: u32 = OptionKind::Integer { min: 1, max: u32::MAX as u64 }, in FEWER,
-        "Simplify to at most this many faces. At most one of faces, ratio, error_mm and targets.";
+        "Simplify to at most this many triangles; a polygon counts as the triangles it is divided into. At most one of faces, ratio, error_mm and targets.";
     ratio: f64 = SHARE, in FEWER,
-        "Simplify to at most this share of the faces. Default of simplify: 0.5.";
+        "Simplify to at most this share of the triangles. Default of simplify: 0.5.";
     error_mm: f64, in FEWER,
         "Simplify as far as no collapse has an error above this, in millimetres.";
     targets: Vec<TargetSpec>, in FEWER,

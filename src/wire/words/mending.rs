@@ -19,7 +19,7 @@ mirror! { pipeline::Require =>
 mirror! { pipeline::FillHoles =>
     /// Whether simple holes are filled.
     FillHoles {
-        /// Boundary loops stay as they are.
+        /// No step fills boundary loops; where the surface is rebuilt, they are closed all the same.
         None = "none",
         /// Planar loops and those that close by ears or a fan without a contact.
         Simple = "simple",
@@ -91,13 +91,13 @@ mirror! { repair::polygons::DegenerateFaces =>
 }
 
 mirror! { winding::OpenShells =>
-    /// How open shells are read where a mesh must be rebuilt.
+    /// How open shells are read where holes are left or a mesh must be rebuilt.
     OpenShells {
         /// Those that nearly bound a volume are closed, others become walls.
         Auto = "auto",
         /// As the boundary of a volume, open only by mistake.
         Close = "close",
-        /// As walls of no thickness.
+        /// As walls.
         Thicken = "thicken",
     }
 }
