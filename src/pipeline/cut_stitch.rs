@@ -7,14 +7,13 @@ use super::step::Step;
 use super::{Action, Answer, Failure, Operation, Options, Outcome, Report};
 use crate::budget::{Budget, Stage, Stopped};
 use crate::formats::Format;
-use crate::mesh::{ChosenEdges, CutMethod, Soup, StitchValidity};
+use crate::mesh::{ChosenEdges, CutMethod, StitchValidity};
 use crate::repair::cut::CutOptions;
 use crate::repair::duplicates::OppositePairs;
 use crate::repair::polygons::DegenerateFaces;
 use crate::repair::snap::SnapOptions;
 use crate::repair::{Draft, Faced};
 use crate::spatial::coincident_f64;
-use std::collections::HashMap;
 
 /// How a mesh is cut and stitched.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -90,7 +89,7 @@ impl CutStitchChoices {
 
 /// Cuts and stitches `input`; one that this does not change comes back as it is.
 pub(super) fn cut_stitch(input: &Input, options: &Options, budget: &Budget) -> Result<Answer, Failure> {
-    check_chosen(&options.cut_stitch.chosen, &input.soup)?;
+    check_chosen(&options.cut_stitch.chosen, input.soup.positions.len())?;
     let report = input.report(Operation::CutStitch, budget)?;
     let before = report.before.as_ref();
     let mut attempt = Attempt::start_with_polygons(&input.soup, before);
@@ -116,33 +115,14 @@ pub(super) fn cut_stitch(input: &Input, options: &Options, budget: &Budget) -> R
     written(&draft, form, input, options, Report { actions, ..report }, budget)
 }
 
-/// Only edges that the file has can be cut.
-fn check_chosen(chosen: &[[u32; 2]], soup: &Soup) -> Result<(), Failure> {
-    let refused = |reason| Err(Failure::NotApplicable { option: "cut_edges", reason });
-    let vertices = soup.positions.len();
-    if let Some(v) = chosen.as_flattened().iter().find(|&&v| v as usize >= vertices) {
-        return refused(format!(
-            "cut_edges names vertex {v}, but the file has {vertices} vertices, numbered from 0"
-        ));
-    }
-    // Vertices at one place are one.
-    let place = |v: u32| soup.positions[v as usize].to_array().map(|x| (x + 0.0).to_bits());
-    let ends = |[a, b]: [u32; 2]| (place(a).min(place(b)), place(a).max(place(b)));
-    let mut unknown: HashMap<_, [u32; 2]> = chosen.iter().map(|&edge| (ends(edge), edge)).collect();
-    for &[a, b, c] in &soup.triangles {
-        if unknown.is_empty() {
-            break;
-        }
-        for edge in [[a, b], [b, c], [c, a]] {
-            unknown.remove(&ends(edge));
-        }
-    }
-    match unknown.values().min() {
-        Some([a, b]) => {
-            refused(format!("cut_edges names the edge from vertex {a} to vertex {b}, which no face has"))
-        }
-        None => Ok(()),
-    }
+/// Edges can only be cut between vertices that the file has.
+fn check_chosen(chosen: &[[u32; 2]], vertices: usize) -> Result<(), Failure> {
+    let unknown = chosen.as_flattened().iter().find(|&&v| v as usize >= vertices);
+    unknown.map_or(Ok(()), |v| {
+        let reason =
+            format!("cut_edges names vertex {v}, but the file has {vertices} vertices, numbered from 0");
+        Err(Failure::NotApplicable { option: "cut_edges", reason })
+    })
 }
 
 /// What becomes of polygons in a file.

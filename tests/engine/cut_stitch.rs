@@ -4,7 +4,7 @@ use meshmend::budget::Budget;
 use meshmend::formats::{Encoding, Format, ReadOptions, read};
 use meshmend::mesh::{CutMethod, EdgeGroups, Soup, singular_vertices, twins};
 use meshmend::pipeline::{
-    Answer, CutStitchChoices, Failure, Fidelity, JoinedEdges, Operation, Options, Outcome, Refusal, Require,
+    Answer, CutStitchChoices, Fidelity, JoinedEdges, Operation, Options, Outcome, Refusal, Require,
     Stitching, run,
 };
 use std::fmt::Write as _;
@@ -533,21 +533,4 @@ fn quads_of_which_one_is_turned_stay_where_they_are() {
         let fidelity = answer.report.fidelity.as_ref().unwrap();
         assert_eq!(fidelity.word, Fidelity::Exact, "{first}: {fidelity:?}");
     }
-}
-
-#[test]
-fn an_edge_to_cut_must_be_one_of_the_file() {
-    let bytes = obj(&cube([0.0; 3]));
-    let cut = |edge: [u32; 2]| {
-        let cut_stitch = CutStitchChoices { chosen: vec![edge], ..CutStitchChoices::default() };
-        let options = Options { cut_stitch, ..Options::default() };
-        match run(Operation::CutStitch, bytes.as_bytes(), &options, &Budget::unlimited()) {
-            Err(Failure::NotApplicable { option: "cut_edges", reason }) => reason,
-            found => format!("{:?}", found.unwrap().report.outcome),
-        }
-    };
-    assert_eq!(cut([0, 1]), "Some(CutStitched)");
-    assert_eq!(cut([1, 0]), cut([0, 1]));
-    assert!(cut([0, 7]).contains("the edge from vertex 0 to vertex 7, which no face has"));
-    assert!(cut([0, 8]).contains("vertex 8"));
 }
