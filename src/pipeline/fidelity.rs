@@ -79,9 +79,9 @@ impl FidelityMeasurement {
     }
 
     /// True when so much is lost behind patches that the openings were better left open: they are that share of the surface, or hide
-    /// whole bodies.
+    /// whole bodies. What is seen through single missing triangles alone is no reason.
     pub(super) fn loses_much_behind(&self, openings: f64) -> bool {
-        let closes_much = openings > DEFECTS_MAX || self.losses.bodies_lost > 0;
+        let closes_much = openings > DEFECTS_MAX || openings > 0.0 && self.losses.bodies_lost > 0;
         self.losses.visible_loss > LOSS_BEHIND_PATCHES_MAX && closes_much
     }
 

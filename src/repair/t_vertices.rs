@@ -13,7 +13,7 @@
 use super::{Changes, Draft};
 use crate::budget::{Budget, Charge, Stopped};
 use crate::geom::{are_collinear, is_on_segment};
-use crate::mesh::{divide, edge_of, triangle_of};
+use crate::mesh::{divide, edge_of, prev_corner, triangle_of};
 use crate::spatial::Bvh;
 
 /// Divides at every boundary vertex inside a boundary edge; of several at one place, where the draft is not welded, at the
@@ -40,14 +40,16 @@ fn split_polygons_of(draft: &mut Draft, inside: &[(u32, u32)]) -> u64 {
     inside.iter().map(|&(h, _)| u64::from(draft.polygons.split(triangle_of(h) as usize))).sum()
 }
 
+/// The half-edges with one triangle, or with copies of one.
 fn boundary_half_edges(draft: &Draft, budget: &Budget) -> Result<Vec<u32>, Stopped> {
     let groups = draft.edge_groups(budget)?;
-    let boundary = groups.iter().filter_map(|group| if let [h] = *group { Some(h) } else { None });
+    let third = |h: u32| edge_of(&draft.triangles, prev_corner(h))[0];
+    let is_boundary = |group: &&[u32]| group.iter().all(|&h| third(h) == third(group[0]));
     let is_proper = |h: &u32| {
         let [a, b, c] = draft.corners(*h as usize / 3);
         !are_collinear(a, b, c)
     };
-    Ok(boundary.filter(is_proper).collect())
+    Ok(groups.iter().filter(is_boundary).flatten().copied().filter(is_proper).collect())
 }
 
 /// Units of work for a vertex that is compared with an edge.
@@ -162,6 +164,28 @@ mod tests {
             let e = groups.find(&draft.triangles, ends).unwrap();
             assert_eq!(groups.group(e).len(), 2, "{ends:?}");
         }
+    }
+
+    #[test]
+    fn copies_of_a_triangle_in_both_directions_are_divided_alike() {
+        let points = [[0, 0], [3, 0], [1, 2], [1, 0], [1, -1]];
+        let mut draft = Draft {
+            positions: points.map(|[x, y]| DVec3::new(f64::from(x), f64::from(y), 0.0)).to_vec(),
+            vertex_origin: (0..5).collect(),
+            triangle_origin: (0..4).collect(),
+            triangles: vec![[0, 1, 2], [0, 2, 1], [0, 4, 3], [3, 4, 1]],
+            ..Draft::default()
+        };
+        let changes = split_t_vertices(&mut draft, &Budget::unlimited()).unwrap();
+        assert_eq!(changes.count("triangles_split"), 2);
+        let ordered = |t: &[u32; 3]| {
+            let mut t = *t;
+            t.sort_unstable();
+            t
+        };
+        let mut all: Vec<[u32; 3]> = draft.triangles.iter().map(ordered).collect();
+        all.sort_unstable();
+        assert_eq!(all, [[0, 2, 3], [0, 2, 3], [0, 3, 4], [1, 2, 3], [1, 2, 3], [1, 3, 4]]);
     }
 
     #[test]

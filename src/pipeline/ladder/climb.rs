@@ -6,9 +6,9 @@ use crate::analysis::{Analysis, DefectCode};
 use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::Depth;
 use crate::formats::Encoding;
-use crate::geom::{print_pitch, triangle_area};
+use crate::geom::triangle_area;
 use crate::mesh::Soup;
-use crate::pipeline::fidelity::{DEFECTS_MAX, FidelityMeasurement, LOST_BEYOND, Original, defined_volume};
+use crate::pipeline::fidelity::{DEFECTS_MAX, FidelityMeasurement, Original, defined_volume};
 use crate::pipeline::input::Input;
 use crate::pipeline::looks;
 use crate::pipeline::output::Candidate;
@@ -21,19 +21,15 @@ use crate::pipeline::{Action, Failure, FidelityLimits, Options, Refusal, Require
 use crate::repair::fill::HoleReport;
 use crate::repair::nest::NestingPolicy;
 use crate::repair::noise::Noise;
-use crate::repair::snap::gap_between_rims;
 use crate::repair::{Draft, Effects, noise};
 use crate::winding::{OpenShells, WindingSolid};
 use std::cell::OnceCell;
 
 /// A plan may take one of so many parts of the work that is left.
-const ATTEMPT_PART: u64 = 4;
+pub(super) const ATTEMPT_PART: u64 = 4;
 
 /// What is hidden, the same.
 const HIDDEN_PART: u64 = 4;
-
-/// Steps of the print lattice by which rounding may take rims apart.
-const ROUNDING_STEPS: f64 = 4.0;
 
 /// What stays the same on all rungs.
 pub(in crate::pipeline) struct Climb<'a> {
@@ -114,14 +110,14 @@ pub(super) struct Uncertified {
 }
 
 impl Situation {
-    pub(super) fn at_the_foot(climb: &Climb<'_>) -> Result<Self, Stopped> {
+    /// Before the first attempt, which joins rims that lie `snap_epsilon` apart.
+    pub(super) fn at_the_foot(climb: &Climb<'_>, snap_epsilon: f64) -> Result<Self, Stopped> {
         let (draft, _) = Draft::from_soup(&climb.input.soup);
         // Where noise about zero keeps rims apart, joining them is the smaller change: both rims could be closed instead,
         // which would leave two bodies with nothing between them.
         let parts_rims = || noise::parts_rims(&draft, climb.budget);
         let parts_rims = climb.budget.within_part(ATTEMPT_PART, parts_rims)?.unwrap_or(false);
         let noise = if parts_rims { Noise::Joined } else { Noise::Stays };
-        let snap_epsilon = climb.gap_between_rims(&draft)?;
         let variant = Variant {
             noise,
             rounds: climb.needs_f32(),
@@ -252,24 +248,6 @@ impl Climb<'_> {
                 Ok(None)
             }
         }
-    }
-
-    /// How far apart rims of the file lie that should be one, at most what counts as lost; 0 where none do, or where that was
-    /// chosen.
-    fn gap_between_rims(&self, draft: &Draft) -> Result<f64, Stopped> {
-        let choices = self.choices;
-        if !choices.may_join_rims()
-            || !self.has_found(DefectCode::BoundaryLoop)
-            || choices.walls == Walls::First
-        {
-            return Ok(0.0);
-        }
-        let most = LOST_BEYOND * diagonal(&self.input.soup);
-        let gap = || gap_between_rims(draft, most, self.budget);
-        let gap = self.budget.within_part(ATTEMPT_PART, gap)?.flatten();
-        // Coordinates that become float32 may come farther apart.
-        let rounding = ROUNDING_STEPS * print_pitch(self.reach()).unwrap_or(0.0);
-        Ok(gap.map_or(0.0, |gap| (gap + rounding).min(most)))
     }
 
     /// Runs a plan: the mended mesh if the best effort may be asked for it, and the one that may be a solid.

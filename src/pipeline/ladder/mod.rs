@@ -12,6 +12,7 @@ mod float32;
 mod keep_first;
 mod noise;
 mod rebuild;
+mod rims;
 mod sheets;
 mod sheets_left;
 mod unite;
@@ -83,14 +84,36 @@ pub(super) enum Climbed {
 /// Climbs until a result is certified that loses little; where one loses much, the closest to the file wins. Gives the names of
 /// the rungs that were tried as well.
 pub(super) fn climb(climb: &Climb<'_>) -> Result<(Climbed, Vec<&'static str>), Failure> {
-    let mut situation = Situation::at_the_foot(climb)?;
+    let gap = rims::gap_between_rims(climb)?;
+    let mut situation = Situation::at_the_foot(climb, gap)?;
     let mut tried = Vec::new();
-    let changes = |kind| kind != RungKind::NewSurface;
-    let changing = || climb_by(changes, climb, &mut situation, &mut tried);
+    change_the_surface(climb, &mut situation, &mut tried)?;
+    if rims::may_have_joined_across_walls(&situation, gap) {
+        let mut apart = Situation::at_the_foot(climb, 0.0)?;
+        tried.push("rims-apart");
+        change_the_surface(climb, &mut apart, &mut tried)?;
+        if rims::is_true(&apart, climb) {
+            situation = apart;
+        }
+    }
+    climb_by(makes_a_surface, climb, &mut situation, &mut tried)?;
+    Ok((situation.outcome(climb), tried))
+}
+
+fn makes_a_surface(kind: RungKind) -> bool {
+    kind == RungKind::NewSurface
+}
+
+/// Climbs by the rungs that change the surface of the file.
+fn change_the_surface(
+    climb: &Climb<'_>,
+    situation: &mut Situation,
+    tried: &mut Vec<&'static str>,
+) -> Result<(), Failure> {
+    let changing = || climb_by(|kind| !makes_a_surface(kind), climb, situation, tried);
     let has_run_out = climb.budget.within_part(CHANGES_PART, changing)?.is_none();
     situation.has_run_out |= has_run_out;
-    climb_by(|kind| !changes(kind), climb, &mut situation, &mut tried)?;
-    Ok((situation.outcome(climb), tried))
+    Ok(())
 }
 
 /// Climbs by the rungs of these kinds until none applies.
