@@ -48,7 +48,8 @@ pub fn arrange(
     options: &ArrangementOptions,
     budget: &Budget,
 ) -> Result<Arrangement, ArrangementError> {
-    let Unwound { mut arrangement, triangles, bvh, _charge } = divide(positions, triangles, options, budget)?;
+    let Unwound { mut arrangement, triangles, bvh, _charges } =
+        divide(positions, triangles, options, budget)?;
     cells::wind(&mut arrangement, &triangles, operand_of, bvh, budget)?;
     Ok(arrangement)
 }
@@ -65,7 +66,8 @@ pub fn arrange_enclosed(
     budget: &Budget,
 ) -> Result<Arrangement, ArrangementError> {
     let options = ArrangementOptions { pairs_max, operands: 1 };
-    let Unwound { mut arrangement, triangles, _charge, .. } = divide(positions, triangles, &options, budget)?;
+    let Unwound { mut arrangement, triangles, _charges, .. } =
+        divide(positions, triangles, &options, budget)?;
     enclosed::enclose(&mut arrangement, &triangles, budget)?;
     Ok(arrangement)
 }
@@ -76,7 +78,7 @@ struct Unwound<'b> {
     /// The triangles between the first of all vertices at one position.
     triangles: Vec<[u32; 3]>,
     bvh: Bvh,
-    _charge: Charge<'b>,
+    _charges: Vec<Charge<'b>>,
 }
 
 fn divide<'b>(
@@ -108,13 +110,14 @@ fn divide<'b>(
         operands: usize::from(options.operands.max(1)),
         windings: Vec::new(),
     };
-    let _charge = budget.charge(triangles.len() as u64 * 64 + pairs.len() as u64 * 600)?;
-    let is_met = divide_clusters(&mut arrangement, &welded, &pairs, budget)?;
+    let charge = budget.charge(triangles.len() as u64 * 64 + pairs.len() as u64 * 600)?;
+    let (is_met, mut charges) = divide_clusters(&mut arrangement, &welded, &pairs, budget)?;
+    charges.push(charge);
     for &t in sound.iter().filter(|&&t| !is_met[t as usize]) {
         arrangement.push(welded[t as usize], t, [(t, false)]);
     }
     arrangement.new_positions = rounded(&arrangement, budget)?;
-    Ok(Unwound { arrangement, triangles: welded, bvh, _charge })
+    Ok(Unwound { arrangement, triangles: welded, bvh, _charges: charges })
 }
 
 /// The positions of the new points.
@@ -193,13 +196,13 @@ fn copies(
     Ok(pairs)
 }
 
-/// Divides the clusters of triangles that meet and adds their pieces; tells which triangles are in one.
-fn divide_clusters(
+/// Divides the clusters of triangles that meet and adds their pieces; tells which triangles are in one, with what they all take.
+fn divide_clusters<'b>(
     arrangement: &mut Arrangement,
     triangles: &[[u32; 3]],
     pairs: &[ContactPair],
-    budget: &Budget,
-) -> Result<Vec<bool>, ArrangementError> {
+    budget: &'b Budget,
+) -> Result<(Vec<bool>, Vec<Charge<'b>>), ArrangementError> {
     let mut is_met = vec![false; triangles.len()];
     let mut sets = UnionFind::new(triangles.len());
     for pair in pairs {
@@ -223,20 +226,22 @@ fn divide_clusters(
         };
         range.map(one).collect::<Result<Vec<_>, ArrangementError>>()
     })?;
-    for (members, (vertices, divided)) in groups.iter().zip(divided.into_iter().flatten()) {
+    let mut charges = Vec::new();
+    for (members, (vertices, mut divided)) in groups.iter().zip(divided.into_iter().flatten()) {
+        charges.append(&mut divided.charges);
         arrangement.add(members, vertices, divided);
     }
-    Ok(is_met)
+    Ok((is_met, charges))
 }
 
 /// Divides the triangles `members`; gives their vertices, ascending, and the pieces.
-fn divide_cluster(
+fn divide_cluster<'b>(
     positions: &[DVec3],
     triangles: &[[u32; 3]],
     members: &[u32],
     pairs: &[(u32, ContactPair)],
-    budget: &Budget,
-) -> Result<(Vec<u32>, DividedCluster), ArrangementError> {
+    budget: &'b Budget,
+) -> Result<(Vec<u32>, DividedCluster<'b>), ArrangementError> {
     let mut vertices: Vec<u32> = members.iter().flat_map(|&t| triangles[t as usize]).collect();
     vertices.sort_unstable();
     vertices.dedup();
@@ -261,8 +266,8 @@ impl Arrangement {
     }
 
     /// Adds the pieces of a cluster, whose new points are numbered in the order in which they are used.
-    fn add(&mut self, members: &[(u32, u32)], vertices: Vec<u32>, divided: DividedCluster) {
-        let DividedCluster { kernel, points, pieces } = divided;
+    fn add(&mut self, members: &[(u32, u32)], vertices: Vec<u32>, divided: DividedCluster<'_>) {
+        let DividedCluster { kernel, points, pieces, .. } = divided;
         let cluster = self.clusters.len() as u32;
         let mut number = vec![u32::MAX; points.len()];
         for piece in pieces {

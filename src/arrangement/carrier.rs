@@ -5,7 +5,7 @@ use super::error::ArrangementError;
 use super::kernel::{ClusterKernel, PlaneView};
 use super::point::{ArrangementPoint, Definition};
 use super::triangulation::{CarrierView, MANY, NONE, Triangulation};
-use crate::budget::Budget;
+use crate::budget::{Budget, Charge};
 use crate::geom::Sign;
 use rustc_hash::FxHashMap;
 
@@ -22,23 +22,25 @@ pub(super) struct Carrier {
 
 /// The pieces of one carrier.
 #[derive(Debug, Default)]
-pub(super) struct CarrierPieces {
+pub(super) struct CarrierPieces<'b> {
     /// Corners of each, as points; counter-clockwise as the first triangle of the carrier.
     pub(super) corners: Vec<[u32; 3]>,
     /// The triangles that cover each, with `true` for those that turn the other way.
     pub(super) sources: Vec<Vec<(u32, bool)>>,
     /// The points that are new, numbered after those of the cluster.
     pub(super) own: Vec<ArrangementPoint>,
+    /// What they take.
+    pub(super) charges: Vec<Charge<'b>>,
 }
 
 /// Divides the triangles of a carrier.
-pub(super) fn divide(
+pub(super) fn divide<'b>(
     carrier: &Carrier,
     kernel: &ClusterKernel,
     shared: &[ArrangementPoint],
     vertex_of: &[u32],
-    budget: &Budget,
-) -> Result<CarrierPieces, ArrangementError> {
+    budget: &'b Budget,
+) -> Result<CarrierPieces<'b>, ArrangementError> {
     let rep = carrier.triangles[0];
     let corners = |t: u32| kernel.triangles[t as usize].map(|v| vertex_of[v as usize]);
     let is_single = carrier.triangles.len() == 1;
@@ -46,7 +48,7 @@ pub(super) fn divide(
         return Ok(CarrierPieces {
             corners: vec![corners(rep)],
             sources: vec![vec![(rep, false)]],
-            own: Vec::new(),
+            ..CarrierPieces::default()
         });
     }
     let view =
@@ -104,15 +106,14 @@ pub(super) fn divide(
         let ends = [find(from)?, find(to)?];
         constrained.insert(Constraint { ends, line: ConstraintLine::Plane(other) })?;
     }
-    let Constrained { mesh, sets, sight, .. } = constrained;
+    let Constrained { mesh, sets, sight, charges, .. } = constrained;
     if is_single {
         let corners = mesh.faces();
         let sources = vec![vec![(rep, false)]; corners.len()];
-        return Ok(CarrierPieces { corners, sources, own: sight.own });
+        return Ok(CarrierPieces { corners, sources, own: sight.own, charges });
     }
-    let mut pieces = covered(&mesh, &sets, carrier, &turns, budget)?;
-    pieces.own = sight.own;
-    Ok(pieces)
+    let pieces = covered(&mesh, &sets, carrier, &turns, budget)?;
+    Ok(CarrierPieces { own: sight.own, charges, ..pieces })
 }
 
 /// The faces that triangles of the carrier cover: from inside along the border of each, as far as the border.
@@ -122,7 +123,7 @@ fn covered(
     carrier: &Carrier,
     turns: &[bool],
     budget: &Budget,
-) -> Result<CarrierPieces, ArrangementError> {
+) -> Result<CarrierPieces<'static>, ArrangementError> {
     let count = mesh.half_edges();
     let is_border = |set: u32, t: usize| sets.of(set).iter().any(|&tag| tag as usize / 3 == t);
     // The lowest half-edge of each face stands for it.

@@ -6,7 +6,7 @@ use super::intern::first_at_place;
 use super::kernel::{ClusterKernel, EXACT};
 use super::pairs::{TriangleMeeting, meeting};
 use super::point::{ArrangementPoint, Definition};
-use crate::budget::Budget;
+use crate::budget::{Budget, Charge};
 use crate::geom::DVec3;
 use crate::mesh::UnionFind;
 use crate::par;
@@ -25,13 +25,15 @@ pub(super) struct ContactPair {
 
 /// The pieces of the triangles of a cluster.
 #[derive(Debug)]
-pub(super) struct DividedCluster {
+pub(super) struct DividedCluster<'b> {
     pub(super) kernel: ClusterKernel,
     /// The points; the first are the vertices of the kernel.
     pub(super) points: Vec<ArrangementPoint>,
     /// Corners, as points of which no two are at one place, the triangle that names the plane and turns the same way, and the
     /// triangles that cover it, with `true` where they turn the other way.
     pub(super) pieces: Vec<PlanePiece>,
+    /// What they take.
+    pub(super) charges: Vec<Charge<'b>>,
 }
 
 /// A piece of the triangles of one plane.
@@ -43,12 +45,12 @@ pub(super) struct PlanePiece {
 }
 
 /// Divides triangles by each other. `positions` are different, `triangles` have an area.
-pub(super) fn divide_all(
+pub(super) fn divide_all<'b>(
     positions: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
     pairs: &[ContactPair],
-    budget: &Budget,
-) -> Result<DividedCluster, ArrangementError> {
+    budget: &'b Budget,
+) -> Result<DividedCluster<'b>, ArrangementError> {
     let kernel = ClusterKernel::new(positions, triangles);
     let (plane_of, mut carriers) = group(&kernel, pairs);
     let (mut points, vertex_of) = points_of_pairs(&kernel, pairs, &plane_of, &mut carriers, budget)?;
@@ -58,9 +60,10 @@ pub(super) fn divide_all(
             .collect::<Result<Vec<_>, _>>()
     })?;
     let shared = points.len() as u32;
-    let mut pieces = Vec::new();
+    let (mut pieces, mut charges) = (Vec::new(), Vec::new());
     for (carrier, part) in carriers.iter().zip(parts.into_iter().flatten()) {
-        let CarrierPieces { corners, sources, own } = part;
+        let CarrierPieces { corners, sources, own, charges: of_part } = part;
+        charges.extend(of_part);
         let shift = points.len() as u32 - shared;
         let moved = |p: u32| if p < shared { p } else { p + shift };
         let plane = carrier.triangles[0];
@@ -70,7 +73,7 @@ pub(super) fn divide_all(
         points.extend(own);
     }
     unite(&kernel, &points, &mut pieces, shared, budget)?;
-    Ok(DividedCluster { kernel, points, pieces })
+    Ok(DividedCluster { kernel, points, pieces, charges })
 }
 
 /// The plane of each triangle, by the lowest triangle that it is connected with by overlaps, and the carriers of these.

@@ -4,10 +4,13 @@ use super::error::ArrangementError;
 use super::kernel::EXACT;
 use super::point::Definition;
 use super::triangulation::{CarrierView, NONE, Triangulation};
-use crate::budget::{Budget, Stopped};
+use crate::budget::{Budget, Charge, Stopped};
 use crate::geom::Sign;
 use std::cmp::Ordering;
 use std::collections::VecDeque;
+
+/// Bytes for a point where constraints cross: its name, ball and integers, and the triangles and pieces that it makes.
+const BYTES_OF_CROSSING: u64 = 1024;
 
 /// The line of a constraint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -69,12 +72,17 @@ pub(super) struct Constrained<'k, 'b> {
     pub(super) mesh: Triangulation,
     pub(super) sets: TagSets,
     lines: Vec<ConstraintLine>,
+    crossings: u64,
+    crossings_charged: u64,
+    /// What crossings take, also once they are pieces.
+    pub(super) charges: Vec<Charge<'b>>,
     budget: &'b Budget,
 }
 
 impl<'k, 'b> Constrained<'k, 'b> {
     pub(super) fn new(sight: CarrierView<'k>, mesh: Triangulation, budget: &'b Budget) -> Self {
-        Self { sight, mesh, sets: TagSets::default(), lines: Vec::new(), budget }
+        let (sets, lines, charges) = (TagSets::default(), Vec::new(), Vec::new());
+        Self { sight, mesh, sets, lines, crossings: 0, crossings_charged: 0, charges, budget }
     }
 
     /// Makes a segment a chain of edges and tags its half-edges with the number of the constraint, at a rim those that there
@@ -175,6 +183,7 @@ impl<'k, 'b> Constrained<'k, 'b> {
         loop {
             self.spend()?;
             if self.mesh.is_constrained(h) {
+                self.count_crossing()?;
                 let definition = self.crossing(h, line);
                 self.budget.spend(EXACT)?;
                 let point = self.sight.kernel.point(definition);
@@ -196,6 +205,17 @@ impl<'k, 'b> Constrained<'k, 'b> {
                 Sign::Negative => self.mesh.prev(g),
             };
         }
+    }
+
+    /// Charges as many crossings ahead as there were until then.
+    fn count_crossing(&mut self) -> Result<(), Stopped> {
+        if self.crossings == self.crossings_charged {
+            let ahead = self.crossings_charged.max(1);
+            self.charges.push(self.budget.charge(BYTES_OF_CROSSING * ahead)?);
+            self.crossings_charged += ahead;
+        }
+        self.crossings += 1;
+        Ok(())
     }
 
     /// Where a line crosses the constraint on the edge of `h`.
