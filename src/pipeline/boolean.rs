@@ -200,7 +200,7 @@ fn share_of_new(draft: &Draft) -> f64 {
     let areas = draft.areas();
     let new = areas.iter().zip(&draft.triangle_origin).filter(|&(_, &origin)| origin == NEW);
     let all: f64 = areas.iter().sum();
-    if all > 0.0 { new.map(|(area, _)| area).sum::<f64>() / all } else { 0.0 }
+    if all > 0.0 { new.fold(0.0, |sum, (area, _)| sum + area) / all } else { 0.0 }
 }
 
 /// The share by which the volume is not the `exact` one; `None` where one of them has no number that can be compared.

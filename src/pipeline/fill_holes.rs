@@ -236,7 +236,9 @@ impl ListedLoops {
         }
         budget.spend(draft.triangles.len() as u64 / 64)?;
         let of_result: f64 = draft.areas().into_iter().sum();
-        let of_patches: f64 = told.iter().filter(|hole| hole.used.is_some()).map(|hole| hole.area).sum();
+        // From a zero without a sign, which the sum of nothing has.
+        let filled = told.iter().filter(|hole| hole.used.is_some());
+        let of_patches = filled.fold(0.0, |area, hole| area + hole.area);
         let interpolated_area_share = if of_result > 0.0 { (of_patches / of_result).min(1.0) } else { 0.0 };
         let mut holes = self.told(told);
         holes.sort_by_key(|outcome| outcome.loops.first().copied());

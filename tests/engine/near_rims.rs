@@ -261,3 +261,20 @@ fn nor_where_the_inside_has_other_vertices_than_the_outside() {
         assert!((volume / truth - 1.0).abs() < 0.01, "{wall}: {volume} instead of {truth}");
     }
 }
+
+#[test]
+fn a_thin_plate_with_a_missing_side_keeps_its_thickness() {
+    // 40 by 60 by 0.1, turned, with vertices in the middle of edges, of which two triangles of the sides are missing.
+    let text = "v 0 0 0\nv -13.0659552 24.8200741 -53.0400276\nv -5.96858263 61.1170158 -37.803257\n\
+                v 7.09737253 36.2969437 15.2367725\nv 0.0959737003 -0.00739007769 -0.0271004811\n\
+                v -12.9699821 24.812685 -53.067131\nv -5.87260914 61.1096268 -37.8303566\n\
+                v 7.1933465 36.2895546 15.209672\nv -9.32614136 43.9459991 -45.0113258\n\
+                v -8.17359161 15.7014666 -33.5966301\nv -8.18622017 49.2775002 -42.7972603\n\
+                f 3 9 4\nf 4 2 1\nf 5 10 7\nf 5 7 8\nf 1 2 6\nf 1 6 5\nf 2 3 7\nf 3 4 8\nf 3 8 7\nf 4 1 5\n\
+                f 4 5 8\nf 9 2 4\nf 10 6 7\n";
+    let answer = answer(text.as_bytes(), &Options::default());
+    assert!(answer.report.tried.contains(&"rims-apart"), "{:?}", answer.report.tried);
+    assert_ne!(answer.report.fidelity.as_ref().unwrap().word, Fidelity::Changed);
+    let volume = answer.report.after.unwrap().measures.volume.unwrap();
+    assert!((volume - 240.0).abs() < 0.01, "{volume}");
+}

@@ -78,3 +78,34 @@ fn a_body_with_area_is_still_one_that_may_not_go_unsaid() {
         (2, 1)
     );
 }
+
+/// Quads of a box from the origin, without its lid.
+fn open_box([x, y, z]: [f64; 3]) -> String {
+    let corner = |i: u32| {
+        let at = |size: f64, bit: u32| size * f64::from(i >> bit & 1);
+        format!("v {} {} {}\n", at(x, 0), at(y, 1), at(z, 2))
+    };
+    let corners: String = (0..8).map(corner).collect();
+    corners + "f 1 3 4 2\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n"
+}
+
+#[test]
+fn a_stray_triangle_beside_an_open_box_does_not_make_it_a_skin() {
+    for height in [2.0, 5.0, 10.0] {
+        let text = format!("{}v 60 0 0\nv 61 0 0\nv 60 1 0\nf 9 10 11\n", open_box([40.0, 30.0, height]));
+        let volume =
+            answer(text.as_bytes(), &Options::default()).report.after.unwrap().measures.volume.unwrap();
+        // The stray becomes a wall.
+        assert!((volume - 1200.0 * height).abs() < 1.0, "{height}: {volume}");
+    }
+}
+
+#[test]
+fn a_wall_inside_a_box_of_which_a_triangle_is_missing_does_not_make_it_a_skin() {
+    // A corner of the lid is missing; the wall begins and ends in the middle of sides.
+    let text = "v 0 0 0\nv 40 0 0\nv 0 30 0\nv 40 30 0\nv 0 0 10\nv 40 0 10\nv 0 30 10\nv 40 30 10\n\
+                v 6 0 10\nv 0 6 10\nv 13 0 2\nv 13 30 2\nv 13 30 8\nv 13 0 8\n\
+                f 1 3 4 2\nf 1 2 6 9 5\nf 3 7 8 4\nf 1 5 10 7 3\nf 2 4 8 6\nf 9 6 8 7 10\nf 11 12 13 14\n";
+    let volume = answer(text.as_bytes(), &Options::default()).report.after.unwrap().measures.volume.unwrap();
+    assert!((volume - 12000.0).abs() < 1e-6, "{volume}");
+}
