@@ -953,7 +953,7 @@ export interface components {
              */
             rate: number;
         };
-        /** @description Simplify to at most this many faces. At most one of faces, ratio, error_mm and targets. */
+        /** @description Simplify to at most this many triangles; a polygon counts as the triangles it is divided into. At most one of faces, ratio, error_mm and targets. */
         Faces: number;
         /**
          * @description How true a result is to its file.
@@ -1029,7 +1029,7 @@ export interface components {
         };
         /**
          * @description Whether simple holes are filled.
-         *     - `none`: Boundary loops stay as they are.
+         *     - `none`: No step fills boundary loops; where the surface is rebuilt, they are closed all the same.
          *     - `simple`: Planar loops and those that close by ears or a fan without a contact.
          * @enum {string}
          */
@@ -2080,10 +2080,10 @@ export interface components {
         /** @description Largest angle in degrees by which a collapse may turn the normal of a face; 180 lets it turn as it will. Default: 78.46. */
         NormalTurnMax: number;
         /**
-         * @description How open shells are read where a mesh must be rebuilt.
+         * @description How open shells are read where holes are left or a mesh must be rebuilt.
          *     - `auto`: Those that nearly bound a volume are closed, others become walls.
          *     - `close`: As the boundary of a volume, open only by mistake.
-         *     - `thicken`: As walls of no thickness.
+         *     - `thicken`: As walls.
          * @enum {string}
          */
         OpenShells: "auto" | "close" | "thicken";
@@ -2996,7 +2996,7 @@ export interface components {
         RangeSpec: components["schemas"]["FaceRef"] | components["schemas"]["TogetherSpec"];
         /** @description Faces whose allowed intervals modeller tells after the operators, by number, by normal and place, by a ray, or several that move together: [3,{"together":[{"face":1},{"face":2,"rate":-1}]}]. Default: none. */
         Ranges: components["schemas"]["RangeSpec"][];
-        /** @description Simplify to at most this share of the faces. Default of simplify: 0.5. */
+        /** @description Simplify to at most this share of the triangles. Default of simplify: 0.5. */
         Ratio: number;
         /**
          * @description The reader of OBJ files.
@@ -3544,10 +3544,10 @@ export interface components {
         };
         /** @description How far to simplify: one member. */
         TargetSpec: {
-            /** @description To at most this many faces. */
+            /** @description To at most this many triangles. */
             faces: number;
         } | {
-            /** @description To at most this share of the faces. */
+            /** @description To at most this share of the triangles. */
             ratio: number;
         } | {
             /** @description As far as no collapse has an error above this, in millimetres. */

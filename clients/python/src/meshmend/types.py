@@ -630,7 +630,7 @@ class FaceSpeed(TypedDict):
 
 Faces: TypeAlias = int
 """
-Simplify to at most this many faces. At most one of faces, ratio, error_mm and targets.
+Simplify to at most this many triangles; a polygon counts as the triangles it is divided into. At most one of faces, ratio, error_mm and targets.
 """
 
 
@@ -684,7 +684,7 @@ class Figure(TypedDict):
 FillHoles: TypeAlias = Literal["none", "simple"]
 """
 Whether simple holes are filled.
-- `none`: Boundary loops stay as they are.
+- `none`: No step fills boundary loops; where the surface is rebuilt, they are closed all the same.
 - `simple`: Planar loops and those that close by ears or a fan without a contact.
 """
 
@@ -1265,10 +1265,10 @@ Largest angle in degrees by which a collapse may turn the normal of a face; 180 
 
 OpenShells: TypeAlias = Literal["auto", "close", "thicken"]
 """
-How open shells are read where a mesh must be rebuilt.
+How open shells are read where holes are left or a mesh must be rebuilt.
 - `auto`: Those that nearly bound a volume are closed, others become walls.
 - `close`: As the boundary of a volume, open only by mistake.
-- `thicken`: As walls of no thickness.
+- `thicken`: As walls.
 """
 
 
@@ -2125,7 +2125,7 @@ class Quote(TypedDict):
 
 Ratio: TypeAlias = float
 """
-Simplify to at most this share of the faces. Default of simplify: 0.5.
+Simplify to at most this share of the triangles. Default of simplify: 0.5.
 """
 
 
@@ -2524,7 +2524,7 @@ class TargetSpec1(TypedDict):
 
     faces: int
     """
-    To at most this many faces.
+    To at most this many triangles.
     """
 
 
@@ -2535,7 +2535,7 @@ class TargetSpec2(TypedDict):
 
     ratio: float
     """
-    To at most this share of the faces.
+    To at most this share of the triangles.
     """
 
 
