@@ -10,7 +10,7 @@ use std::cmp::Ordering;
 use std::collections::VecDeque;
 
 /// Bytes for a point where constraints cross: its name, ball and integers, and the triangles and pieces that it makes.
-const BYTES_OF_CROSSING: u64 = 1024;
+const BYTES_OF_CROSSING: u64 = 640;
 
 /// The line of a constraint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -352,7 +352,7 @@ fn a_misspelt_flag_value_or_command_is_answered_with_the_nearest_one() {
         ),
         (
             &["repair", "open.off", "-o", "out.off", "--wall-mm", "-1"],
-            "`--wall-mm` cannot be `-1`; expected a number from 0",
+            "`--wall-mm` cannot be `-1`; expected a number from 1e-6",
         ),
         (&["serve", "--admin-listn", "off"], "'--admin-listen'"),
     ] {
