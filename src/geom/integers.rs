@@ -1,4 +1,4 @@
-//! Integers of any size: the digits of an f64, vectors, and the f64 nearest to a quotient.
+//! Integers of any size: the digits of an f64, vectors, and the f64 near a quotient.
 
 use super::power_of_two;
 use num_bigint::BigInt;

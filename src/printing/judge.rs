@@ -173,3 +173,23 @@ fn sorted(mut sides: [f64; 3]) -> [f64; 3] {
     sides.sort_unstable_by(f64::total_cmp);
     sides
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_as_thick_as_its_limit_but_for_rounding_is_not_below_it() {
+        let limit = Limit { warning: Some(1.0), error: Some(0.7) };
+        for (measured, expected) in [
+            (1.0, Status::Ok),
+            (1.0 - 2e-15, Status::Ok),
+            (1.0 - 1e-6, Status::Warning),
+            (0.7 - 1e-15, Status::Warning),
+            (0.69, Status::Error),
+        ] {
+            let status = below(CheckCode::Wall, Some(measured), limit, Vec::new()).status;
+            assert_eq!(status, Some(expected), "{measured}");
+        }
+    }
+}

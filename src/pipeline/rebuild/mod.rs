@@ -1,6 +1,7 @@
 //! The last rung: a surface rebuilt around what no local edit could make a solid.
 
 mod fewer;
+mod filled;
 mod parts;
 
 use self::fewer::WrapReduction;
@@ -383,7 +384,7 @@ impl Rebuilding<'_> {
         let wrap = || {
             let wrapped = wrap::wrap(&draft.positions, &draft.triangles, options, self.budget)?;
             match self.options.nesting {
-                NestingPolicy::Fill => Ok(filled(wrapped, self.budget)?),
+                NestingPolicy::Fill => Ok(filled::filled(wrapped, self.budget)?),
                 NestingPolicy::AsOriented | NestingPolicy::Alternate => Ok(wrapped),
             }
         };
@@ -446,30 +447,6 @@ impl Rebuilding<'_> {
         }
         Candidate::write(soup, self.input, self.encoding, Depth::FirstViolation, self.budget)
     }
-}
-
-/// The outermost shells of a wrap.
-fn filled(wrapped: Wrapped, budget: &Budget) -> Result<Wrapped, Stopped> {
-    let Wrapped { positions, unfitted, triangles, account } = wrapped;
-    // What was fitted may meet itself.
-    let surest = if unfitted.is_empty() { &positions } else { &unfitted };
-    let mut draft = Draft {
-        positions: surest.clone(),
-        vertex_origin: (0..surest.len() as u32).collect(),
-        triangle_origin: (0..triangles.len() as u32).collect(),
-        triangles,
-        ..Draft::default()
-    };
-    let fill = NestOptions { policy: NestingPolicy::Fill, is_embedded: true, ..NestOptions::default() };
-    nest::nest(&mut draft, &fill, budget)?;
-    let kept =
-        |of: &[DVec3]| draft.vertex_origin.iter().filter_map(|&v| of.get(v as usize).copied()).collect();
-    Ok(Wrapped {
-        positions: kept(&positions),
-        unfitted: kept(&unfitted),
-        triangles: draft.triangles,
-        account,
-    })
 }
 
 /// The wrap as a step of the plan, with the reading that it took.
