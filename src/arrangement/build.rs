@@ -2,6 +2,7 @@
 
 use super::cells;
 use super::cluster::{self, ContactPair, DividedCluster};
+use super::constraints::CrossingAccount;
 use super::enclosed;
 use super::error::ArrangementError;
 use super::point::Definition;
@@ -20,14 +21,16 @@ const ROUNDING: u64 = 4;
 pub struct ArrangementOptions {
     /// Most pairs of triangles that may meet beyond common vertices and edges.
     pub pairs_max: usize,
+    /// Most points inside of triangles where others that pass through cross each other, counted in each of the triangles.
+    pub crossings_max: usize,
     /// Number of operands, each with its own winding numbers.
     pub operands: u8,
 }
 
 impl Default for ArrangementOptions {
-    /// One operand, and two million pairs: about two gigabytes.
+    /// One operand, and two million pairs and points: about two gigabytes.
     fn default() -> Self {
-        Self { pairs_max: 2_000_000, operands: 1 }
+        Self { pairs_max: 2_000_000, crossings_max: 2_000_000, operands: 1 }
     }
 }
 
@@ -62,12 +65,10 @@ pub fn arrange(
 pub fn arrange_enclosed(
     positions: &[DVec3],
     triangles: &[[u32; 3]],
-    pairs_max: usize,
+    options: &ArrangementOptions,
     budget: &Budget,
 ) -> Result<Arrangement, ArrangementError> {
-    let options = ArrangementOptions { pairs_max, operands: 1 };
-    let Unwound { mut arrangement, triangles, _charges, .. } =
-        divide(positions, triangles, &options, budget)?;
+    let Unwound { mut arrangement, triangles, _charges, .. } = divide(positions, triangles, options, budget)?;
     enclosed::enclose(&mut arrangement, &triangles, budget)?;
     Ok(arrangement)
 }
@@ -111,7 +112,8 @@ fn divide<'b>(
         windings: Vec::new(),
     };
     let charge = budget.charge(triangles.len() as u64 * 64 + pairs.len() as u64 * 600)?;
-    let (is_met, mut charges) = divide_clusters(&mut arrangement, &welded, &pairs, budget)?;
+    let account = CrossingAccount::new(options.crossings_max, budget);
+    let (is_met, mut charges) = divide_clusters(&mut arrangement, &welded, &pairs, &account)?;
     charges.push(charge);
     for &t in sound.iter().filter(|&&t| !is_met[t as usize]) {
         arrangement.push(welded[t as usize], t, [(t, false)]);
@@ -201,7 +203,7 @@ fn divide_clusters<'b>(
     arrangement: &mut Arrangement,
     triangles: &[[u32; 3]],
     pairs: &[ContactPair],
-    budget: &'b Budget,
+    account: &CrossingAccount<'b>,
 ) -> Result<(Vec<bool>, Vec<Charge<'b>>), ArrangementError> {
     let mut is_met = vec![false; triangles.len()];
     let mut sets = UnionFind::new(triangles.len());
@@ -222,7 +224,7 @@ fn divide_clusters<'b>(
     let divided = par::try_map_ranges(groups.len(), 4, |range| {
         let one = |i: usize| {
             let members: Vec<u32> = groups[i].iter().map(|&(_, t)| t).collect();
-            divide_cluster(positions, triangles, &members, pair_groups[i], budget)
+            divide_cluster(positions, triangles, &members, pair_groups[i], account)
         };
         range.map(one).collect::<Result<Vec<_>, ArrangementError>>()
     })?;
@@ -240,7 +242,7 @@ fn divide_cluster<'b>(
     triangles: &[[u32; 3]],
     members: &[u32],
     pairs: &[(u32, ContactPair)],
-    budget: &'b Budget,
+    account: &CrossingAccount<'b>,
 ) -> Result<(Vec<u32>, DividedCluster<'b>), ArrangementError> {
     let mut vertices: Vec<u32> = members.iter().flat_map(|&t| triangles[t as usize]).collect();
     vertices.sort_unstable();
@@ -253,7 +255,7 @@ fn divide_cluster<'b>(
         .iter()
         .map(|(_, pair)| ContactPair { triangles: pair.triangles.map(|t| own(members, t)), kind: pair.kind })
         .collect();
-    let divided = cluster::divide_all(own_positions, own_triangles, &own_pairs, budget)?;
+    let divided = cluster::divide_all(own_positions, own_triangles, &own_pairs, account)?;
     Ok((vertices, divided))
 }
 
@@ -267,9 +269,10 @@ impl Arrangement {
 
     /// Adds the pieces of a cluster, whose new points are numbered in the order in which they are used.
     fn add(&mut self, members: &[(u32, u32)], vertices: Vec<u32>, divided: DividedCluster<'_>) {
-        let DividedCluster { kernel, points, pieces, .. } = divided;
+        let DividedCluster { kernel, points, pieces, sources, .. } = divided;
         let cluster = self.clusters.len() as u32;
         let mut number = vec![u32::MAX; points.len()];
+        let mut sources = sources.into_iter();
         for piece in pieces {
             let corners = piece.corners.map(|p| match points[p as usize].definition {
                 Definition::Vertex(v) => vertices[v as usize],
@@ -283,8 +286,8 @@ impl Arrangement {
                 }
             });
             let member = |t: u32| members[t as usize].1;
-            let sources = piece.sources.into_iter().map(|(t, is_turned)| (member(t), is_turned));
-            self.push(corners, member(piece.plane), sources);
+            let of_piece = sources.by_ref().take(piece.source_count as usize);
+            self.push(corners, member(piece.plane), of_piece.map(|(t, is_turned)| (member(t), is_turned)));
         }
         let triangles = members.iter().map(|&(_, t)| t).collect();
         self.clusters.push(Cluster { kernel, points, vertices, triangles });

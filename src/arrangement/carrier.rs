@@ -1,6 +1,6 @@
 //! Plane carriers: the triangles of one plane that overlap share one triangulation, so that copies agree by construction.
 
-use super::constraints::{Constrained, Constraint, ConstraintLine, TagSets};
+use super::constraints::{Constrained, Constraint, ConstraintLine, CrossingAccount, TagSets};
 use super::error::ArrangementError;
 use super::kernel::{ClusterKernel, PlaneView};
 use super::point::{ArrangementPoint, Definition};
@@ -25,8 +25,10 @@ pub(super) struct Carrier {
 pub(super) struct CarrierPieces<'b> {
     /// Corners of each, as points; counter-clockwise as the first triangle of the carrier.
     pub(super) corners: Vec<[u32; 3]>,
-    /// The triangles that cover each, with `true` for those that turn the other way.
-    pub(super) sources: Vec<Vec<(u32, bool)>>,
+    /// The triangles that cover them, one piece after the other, with `true` for those that turn the other way.
+    pub(super) sources: Vec<(u32, bool)>,
+    /// Where in `sources` those of each piece end.
+    pub(super) source_ends: Vec<u32>,
     /// The points that are new, numbered after those of the cluster.
     pub(super) own: Vec<ArrangementPoint>,
     /// What they take.
@@ -39,15 +41,17 @@ pub(super) fn divide<'b>(
     kernel: &ClusterKernel,
     shared: &[ArrangementPoint],
     vertex_of: &[u32],
-    budget: &'b Budget,
+    account: &CrossingAccount<'b>,
 ) -> Result<CarrierPieces<'b>, ArrangementError> {
+    let budget = account.budget;
     let rep = carrier.triangles[0];
     let corners = |t: u32| kernel.triangles[t as usize].map(|v| vertex_of[v as usize]);
     let is_single = carrier.triangles.len() == 1;
     if is_single && carrier.points.is_empty() && carrier.segments.is_empty() {
         return Ok(CarrierPieces {
             corners: vec![corners(rep)],
-            sources: vec![vec![(rep, false)]],
+            sources: vec![(rep, false)],
+            source_ends: vec![1],
             ..CarrierPieces::default()
         });
     }
@@ -83,7 +87,7 @@ pub(super) fn divide<'b>(
         vertices.insert(point, v);
         budget.spend(sight.take_units() + 1)?;
     }
-    let mut constrained = Constrained::new(sight, mesh, budget);
+    let mut constrained = Constrained::new(sight, mesh, account);
     let find = |point: u32| {
         vertices
             .get(&point)
@@ -107,13 +111,17 @@ pub(super) fn divide<'b>(
         constrained.insert(Constraint { ends, line: ConstraintLine::Plane(other) })?;
     }
     let Constrained { mesh, sets, sight, charges, .. } = constrained;
+    let mut own = sight.own;
+    // Integers take most of a point, and few of these are asked for again.
+    own.iter_mut().for_each(ArrangementPoint::forget_integers);
     if is_single {
         let corners = mesh.faces();
-        let sources = vec![vec![(rep, false)]; corners.len()];
-        return Ok(CarrierPieces { corners, sources, own: sight.own, charges });
+        let sources = vec![(rep, false); corners.len()];
+        let source_ends = (1..=corners.len() as u32).collect();
+        return Ok(CarrierPieces { corners, sources, source_ends, own, charges });
     }
     let pieces = covered(&mesh, &sets, carrier, &turns, budget)?;
-    Ok(CarrierPieces { own: sight.own, charges, ..pieces })
+    Ok(CarrierPieces { own, charges, ..pieces })
 }
 
 /// The faces that triangles of the carrier cover: from inside along the border of each, as far as the border.
@@ -166,7 +174,8 @@ fn covered(
         let f = f as u32;
         let face = [f, mesh.next(f), mesh.prev(f)];
         pieces.corners.push(face.map(|h| mesh.points[mesh.from(h) as usize]));
-        pieces.sources.push(sources);
+        pieces.sources.extend(sources);
+        pieces.source_ends.push(pieces.sources.len() as u32);
     }
     Ok(pieces)
 }

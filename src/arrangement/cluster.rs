@@ -1,6 +1,7 @@
 //! One cluster of triangles that meet: its points, its carriers and their pieces.
 
 use super::carrier::{Carrier, CarrierPieces, divide};
+use super::constraints::CrossingAccount;
 use super::error::ArrangementError;
 use super::intern::first_at_place;
 use super::kernel::{ClusterKernel, EXACT};
@@ -29,9 +30,9 @@ pub(super) struct DividedCluster<'b> {
     pub(super) kernel: ClusterKernel,
     /// The points; the first are the vertices of the kernel.
     pub(super) points: Vec<ArrangementPoint>,
-    /// Corners, as points of which no two are at one place, the triangle that names the plane and turns the same way, and the
-    /// triangles that cover it, with `true` where they turn the other way.
     pub(super) pieces: Vec<PlanePiece>,
+    /// The triangles that cover the pieces, one piece after the other, with `true` where they turn the other way.
+    pub(super) sources: Vec<(u32, bool)>,
     /// What they take.
     pub(super) charges: Vec<Charge<'b>>,
 }
@@ -39,9 +40,12 @@ pub(super) struct DividedCluster<'b> {
 /// A piece of the triangles of one plane.
 #[derive(Debug)]
 pub(super) struct PlanePiece {
+    /// Points of which no two are at one place.
     pub(super) corners: [u32; 3],
+    /// The triangle that names the plane and turns the same way.
     pub(super) plane: u32,
-    pub(super) sources: Vec<(u32, bool)>,
+    /// How many triangles cover it.
+    pub(super) source_count: u32,
 }
 
 /// Divides triangles by each other. `positions` are different, `triangles` have an area.
@@ -49,31 +53,38 @@ pub(super) fn divide_all<'b>(
     positions: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
     pairs: &[ContactPair],
-    budget: &'b Budget,
+    account: &CrossingAccount<'b>,
 ) -> Result<DividedCluster<'b>, ArrangementError> {
+    let budget = account.budget;
     let kernel = ClusterKernel::new(positions, triangles);
     let (plane_of, mut carriers) = group(&kernel, pairs);
     let (mut points, vertex_of) = points_of_pairs(&kernel, pairs, &plane_of, &mut carriers, budget)?;
     let parts = par::try_map_ranges(carriers.len(), CHUNK, |range| {
         range
-            .map(|c| divide(&carriers[c], &kernel, &points, &vertex_of, budget))
+            .map(|c| divide(&carriers[c], &kernel, &points, &vertex_of, account))
             .collect::<Result<Vec<_>, _>>()
     })?;
     let shared = points.len() as u32;
-    let (mut pieces, mut charges) = (Vec::new(), Vec::new());
-    for (carrier, part) in carriers.iter().zip(parts.into_iter().flatten()) {
-        let CarrierPieces { corners, sources, own, charges: of_part } = part;
-        charges.extend(of_part);
+    let parts: Vec<CarrierPieces<'_>> = parts.into_iter().flatten().collect();
+    let (mut pieces, mut sources, mut charges) = (Vec::new(), Vec::new(), Vec::new());
+    points.reserve_exact(parts.iter().map(|part| part.own.len()).sum());
+    pieces.reserve_exact(parts.iter().map(|part| part.corners.len()).sum());
+    sources.reserve_exact(parts.iter().map(|part| part.sources.len()).sum());
+    for (carrier, part) in carriers.iter().zip(parts) {
+        charges.extend(part.charges);
         let shift = points.len() as u32 - shared;
         let moved = |p: u32| if p < shared { p } else { p + shift };
         let plane = carrier.triangles[0];
-        let piece =
-            |(corners, sources): ([u32; 3], _)| PlanePiece { corners: corners.map(moved), plane, sources };
-        pieces.extend(corners.into_iter().zip(sources).map(piece));
-        points.extend(own);
+        let mut start = 0;
+        for (corners, &end) in part.corners.into_iter().zip(&part.source_ends) {
+            pieces.push(PlanePiece { corners: corners.map(moved), plane, source_count: end - start });
+            start = end;
+        }
+        sources.extend(part.sources);
+        points.extend(part.own);
     }
-    unite(&kernel, &points, &mut pieces, shared, budget)?;
-    Ok(DividedCluster { kernel, points, pieces, charges })
+    unite(&kernel, &mut points, &mut pieces, shared, budget)?;
+    Ok(DividedCluster { kernel, points, pieces, sources, charges })
 }
 
 /// The plane of each triangle, by the lowest triangle that it is connected with by overlaps, and the carriers of these.
@@ -181,10 +192,10 @@ fn points_of_pairs(
     Ok((points, vertex_of))
 }
 
-/// Gives points at one place that different carriers made one number: that of the first.
+/// Keeps one of the points at one place that different carriers made: the first.
 fn unite(
     kernel: &ClusterKernel,
-    points: &[ArrangementPoint],
+    points: &mut Vec<ArrangementPoint>,
     pieces: &mut [PlanePiece],
     shared: u32,
     budget: &Budget,
@@ -196,10 +207,20 @@ fn unite(
     par::sort_unstable(&mut used);
     used.dedup();
     let first = first_at_place(kernel, points, &used, budget)?;
+    // The first of each place before the others, as both lists ascend.
     let mut renamed: Vec<u32> = (0..points.len() as u32).collect();
+    let mut kept = shared;
     for (&point, &first) in used.iter().zip(&first) {
-        renamed[point as usize] = first;
+        renamed[point as usize] = if point < shared || first < point {
+            renamed[first as usize]
+        } else {
+            points.swap(kept as usize, point as usize);
+            kept += 1;
+            kept - 1
+        };
     }
+    points.truncate(kept as usize);
+    points.shrink_to_fit();
     for piece in pieces {
         piece.corners = piece.corners.map(|p| renamed[p as usize]);
     }

@@ -8,9 +8,33 @@ use crate::budget::{Budget, Charge, Stopped};
 use crate::geom::Sign;
 use std::cmp::Ordering;
 use std::collections::VecDeque;
+use std::sync::atomic::{self, AtomicU64};
 
-/// Bytes for a point where constraints cross: its name, ball and integers, and the triangles and pieces that it makes.
-const BYTES_OF_CROSSING: u64 = 640;
+/// Bytes for a point where constraints cross: its name and ball, and the triangles and pieces that it makes.
+pub(super) const BYTES_OF_CROSSING: u64 = 320;
+
+/// The points where constraints cross, in all carriers of an arrangement.
+#[derive(Debug)]
+pub(super) struct CrossingAccount<'b> {
+    pub(super) budget: &'b Budget,
+    count: AtomicU64,
+    max: u64,
+}
+
+impl<'b> CrossingAccount<'b> {
+    /// An account of at most `max` points.
+    pub(super) fn new(max: usize, budget: &'b Budget) -> Self {
+        Self { budget, count: AtomicU64::new(0), max: max as u64 }
+    }
+
+    /// Charges so many more points.
+    fn charge(&self, crossings: u64) -> Result<Charge<'b>, ArrangementError> {
+        if self.count.fetch_add(crossings, atomic::Ordering::Relaxed) + crossings > self.max {
+            return Err(ArrangementError::TooManyCrossings { limit: self.max });
+        }
+        Ok(self.budget.charge(BYTES_OF_CROSSING * crossings)?)
+    }
+}
 
 /// The line of a constraint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -76,13 +100,13 @@ pub(super) struct Constrained<'k, 'b> {
     crossings_charged: u64,
     /// What crossings take, also once they are pieces.
     pub(super) charges: Vec<Charge<'b>>,
-    budget: &'b Budget,
+    account: &'k CrossingAccount<'b>,
 }
 
 impl<'k, 'b> Constrained<'k, 'b> {
-    pub(super) fn new(sight: CarrierView<'k>, mesh: Triangulation, budget: &'b Budget) -> Self {
+    pub(super) fn new(sight: CarrierView<'k>, mesh: Triangulation, account: &'k CrossingAccount<'b>) -> Self {
         let (sets, lines, charges) = (TagSets::default(), Vec::new(), Vec::new());
-        Self { sight, mesh, sets, lines, crossings: 0, crossings_charged: 0, charges, budget }
+        Self { sight, mesh, sets, lines, crossings: 0, crossings_charged: 0, charges, account }
     }
 
     /// Makes a segment a chain of edges and tags its half-edges with the number of the constraint, at a rim those that there
@@ -115,13 +139,13 @@ impl<'k, 'b> Constrained<'k, 'b> {
 
     /// Counts a step, and what was looked at since the last one.
     fn spend(&self) -> Result<(), Stopped> {
-        self.budget.spend(2 + self.sight.take_units())
+        self.account.budget.spend(2 + self.sight.take_units())
     }
 
     fn tag(&mut self, h: u32, tag: u32) -> Result<(), ArrangementError> {
         let set = &mut self.mesh.tags[h as usize];
         // A set is copied for each member that it gets: many copies of a triangle are dear.
-        self.budget.spend(4 * self.sets.of(*set).len() as u64)?;
+        self.account.budget.spend(4 * self.sets.of(*set).len() as u64)?;
         *set = self.sets.with(*set, tag);
         Ok(())
     }
@@ -185,7 +209,7 @@ impl<'k, 'b> Constrained<'k, 'b> {
             if self.mesh.is_constrained(h) {
                 self.count_crossing()?;
                 let definition = self.crossing(h, line);
-                self.budget.spend(EXACT)?;
+                self.account.budget.spend(EXACT)?;
                 let point = self.sight.kernel.point(definition);
                 let point = self.sight.push(point);
                 return Ok(self.mesh.split_edge(h, point));
@@ -208,10 +232,10 @@ impl<'k, 'b> Constrained<'k, 'b> {
     }
 
     /// Charges as many crossings ahead as there were until then.
-    fn count_crossing(&mut self) -> Result<(), Stopped> {
+    fn count_crossing(&mut self) -> Result<(), ArrangementError> {
         if self.crossings == self.crossings_charged {
             let ahead = self.crossings_charged.max(1);
-            self.charges.push(self.budget.charge(BYTES_OF_CROSSING * ahead)?);
+            self.charges.push(self.account.charge(ahead)?);
             self.crossings_charged += ahead;
         }
         self.crossings += 1;

@@ -16,6 +16,12 @@ pub enum ArrangementError {
         /// How many may.
         limit: u64,
     },
+    /// Triangles that pass through others cross each other there at more points than the caller allows.
+    #[error("triangles cross each other inside of others at more than {limit} points")]
+    TooManyCrossings {
+        /// At how many they may.
+        limit: u64,
+    },
     /// A corner of a triangle has no finite coordinates, or does not exist.
     #[error("triangle {triangle} has a corner without a finite position")]
     NotFinite {

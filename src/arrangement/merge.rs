@@ -4,7 +4,7 @@
 //! An edge stays where the pieces beside it are of different triangles, or more than two. A point goes when no edge that
 //! stays ends there, or two that are on one line. The regions of all triangles then have the same points on common edges.
 
-use super::constraints::{Constrained, Constraint, ConstraintLine};
+use super::constraints::{Constrained, Constraint, ConstraintLine, CrossingAccount};
 use super::error::ArrangementError;
 use super::extract::{BoundaryPiece, SolidBoundary};
 use super::triangulation::{CarrierView, MANY, NONE, Triangulation};
@@ -202,7 +202,8 @@ impl Arrangement {
             vertices.insert(point, v);
             budget.spend(sight.take_units() + 1)?;
         }
-        let mut constrained = Constrained::new(sight, mesh, budget);
+        let account = CrossingAccount::new(usize::MAX, budget);
+        let mut constrained = Constrained::new(sight, mesh, &account);
         for ends in &region.border {
             let ends = ends.map(|p| vertices[&p]);
             constrained.insert(Constraint { ends, line: ConstraintLine::Plane(t as u32) })?;

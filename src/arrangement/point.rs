@@ -40,6 +40,13 @@ pub(super) struct ArrangementPoint {
     pub(super) exact: OnceLock<Box<Homogeneous>>,
 }
 
+impl ArrangementPoint {
+    /// Gives back the memory of the coordinates in integers, which are found again when they are asked for.
+    pub(super) fn forget_integers(&mut self) {
+        self.exact = OnceLock::new();
+    }
+}
+
 impl Definition {
     /// True when the point lies on the line of `edge` by its name.
     fn is_on_edge(&self, edge: [u32; 2]) -> bool {

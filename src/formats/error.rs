@@ -97,7 +97,9 @@ impl ReadError {
             "COLLADA" => {
                 "a mesh in STL, OBJ, OFF, PLY, 3MF or glTF: modelling programs export the scene as OBJ with its materials"
             }
-            "text in UTF-16" => "a mesh in STL, OBJ, OFF, PLY, 3MF or glTF, as text in UTF-8",
+            "text in UTF-16" | "text in UTF-32" => {
+                "a mesh in STL, OBJ, OFF, PLY, 3MF or glTF, as text in UTF-8"
+            }
             _ => "a mesh in STL, OBJ, OFF, PLY, 3MF or glTF",
         };
         Self { kind: ReadErrorKind::Foreign { name }, place: Place::Whole, expected: expected.to_owned() }

@@ -45,7 +45,7 @@ pub(super) fn foreign(bytes: &[u8]) -> Option<&'static str> {
     if start.starts_with(b"PK\x03\x04") || start.starts_with(b"PK\x05\x06") {
         return Some(archive(bytes));
     }
-    if let Some(name) = utf_16(start) {
+    if let Some(name) = wide_text(start) {
         return Some(name);
     }
     let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start).trim_ascii_start();
@@ -75,6 +75,25 @@ fn archive(bytes: &[u8]) -> &'static str {
     } else {
         "a zip archive"
     }
+}
+
+/// Text in letters of more than one byte, which bytes as they are would tell as another mesh.
+pub(super) fn wide_text(start: &[u8]) -> Option<&'static str> {
+    utf_32(start).or_else(|| utf_16(start))
+}
+
+/// Text of four bytes a letter, with its mark, or without one where three of four bytes are zero.
+fn utf_32(start: &[u8]) -> Option<&'static str> {
+    let is_marked = start.starts_with(b"\xff\xfe\0\0") || start.starts_with(b"\0\0\xfe\xff");
+    let letters = &start[..start.len() / 4 * 4];
+    let count = letters.len() / 4;
+    let is_text = |letter: usize| {
+        let plain = |four: &&[u8]| {
+            (0..4).all(|k| k == letter || four[k] == 0) && matches!(four[letter], 9 | 10 | 13 | 32..=126)
+        };
+        count >= 8 && letters.chunks(4).filter(plain).count() >= count - count / 8
+    };
+    (is_marked || is_text(0) || is_text(3)).then_some("text in UTF-32")
 }
 
 /// Text of two bytes a letter, with its mark, or without one where every other byte is zero.
@@ -107,6 +126,8 @@ mod tests {
 
     #[test]
     fn what_is_not_read_is_known_by_its_first_bytes() {
+        let utf_32: Vec<u8> =
+            "solid a\nfacet normal 0 0 1\n".chars().flat_map(|c| u32::from(c).to_le_bytes()).collect();
         let utf_16: Vec<u8> = "v 0 0 0\nv 1 0 0\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
         let named: Vec<u8> =
             "# größe μ\no Würfel\nv 0 0 0\nv 1 0 0\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
@@ -131,6 +152,7 @@ mod tests {
             (b"  0\r\nSECTION\r\n", "DXF"),
             (b"\n<!DOCTYPE html><title>403</title>", "a web page"),
             (&utf_16, "text in UTF-16"),
+            (&utf_32, "text in UTF-32"),
             (&marked, "text in UTF-16"),
             (&named, "text in UTF-16"),
             (&big, "text in UTF-16"),

@@ -49,6 +49,7 @@ pub(super) async fn envelop(mut request: Request, next: Next) -> Response {
     let started = Instant::now();
     let seen = LoggedRequest::of(&request);
     let unread = Unread::watch(&mut request);
+    let is_negotiated = request.uri().path().starts_with("/v1/");
     request.extensions_mut().insert(seen.id.clone());
     let mut response = match head_too_large(&request) {
         Some(problem) => problem::respond(problem),
@@ -57,6 +58,9 @@ pub(super) async fn envelop(mut request: Request, next: Next) -> Response {
             answer(request, next).instrument(span).await
         }
     };
+    if is_negotiated {
+        response.headers_mut().append(header::VARY, HeaderValue::from_static("accept"));
+    }
     seen.finish(&mut response, &unread, started);
     response
 }

@@ -1,6 +1,7 @@
 //! What a head says about itself and about the bytes behind it, before anybody else believes it.
 
 use axum::extract::Request;
+use axum::http::uri::Authority;
 use axum::http::{HeaderMap, HeaderValue, Version, header};
 
 use crate::wire::{Problem, ProblemCode};
@@ -15,12 +16,23 @@ pub(super) fn check(request: &mut Request) -> Result<(), Problem> {
 
 /// HTTP/1.1 asks for exactly one `Host` (RFC 9112, section 3.2).
 fn check_host(version: Version, headers: &HeaderMap) -> Result<(), Problem> {
-    let hosts = headers.get_all(header::HOST).iter().count();
-    if hosts == 1 || (hosts == 0 && version < Version::HTTP_11) {
-        return Ok(());
-    }
-    let detail = if hosts == 0 { "the header `Host` is missing" } else { "the header `Host` is there twice" };
+    let hosts: Vec<&HeaderValue> = headers.get_all(header::HOST).iter().collect();
+    let detail = match hosts[..] {
+        [host] if is_host(host) => return Ok(()),
+        [] if version < Version::HTTP_11 => return Ok(()),
+        [_] => "the header `Host` is no host with or without a port",
+        [] => "the header `Host` is missing",
+        _ => "the header `Host` is there twice",
+    };
     Err(Problem { parameter: Some("Host".to_owned()), ..Problem::new(ProblemCode::InvalidParameter, detail) })
+}
+
+/// Whether this is a host with or without a port, or nothing, which means that there is none.
+fn is_host(value: &HeaderValue) -> bool {
+    let Ok(text) = value.to_str() else { return false };
+    let behind_address = text.split_once(']').map_or("", |(_, rest)| rest);
+    let is_authority = Authority::try_from(text).is_ok() && !text.contains('@');
+    text.is_empty() || is_authority && (behind_address.is_empty() || behind_address.starts_with(':'))
 }
 
 /// A body is sent as it is or in chunks; other transfer codings would be taken for a part of the mesh.
@@ -81,6 +93,13 @@ mod tests {
         let of = |version, lines: &[_]| checked(version, lines).map(drop);
         assert_eq!(of(Version::HTTP_11, &[("host", "a")]), Ok(()));
         assert_eq!(of(Version::HTTP_10, &[]), Ok(()));
+        for host in ["", "localhost:8080", "[::1]", "[::1]:8080", "127.0.0.1:1"] {
+            assert_eq!(of(Version::HTTP_11, &[("host", host)]), Ok(()), "{host}");
+        }
+        for host in ["[::1]evil.example", "a b", "user@a", "a/b", "[::1", "a, b"] {
+            let refused = Err(ProblemCode::InvalidParameter);
+            assert_eq!(of(Version::HTTP_11, &[("host", host)]), refused, "{host}");
+        }
         assert_eq!(of(Version::HTTP_11, &[]), Err(ProblemCode::InvalidParameter));
         assert_eq!(of(Version::HTTP_11, &[("host", "a"), ("host", "a")]), Err(ProblemCode::InvalidParameter));
     }

@@ -55,6 +55,7 @@ mod start;
 mod state;
 mod tenant;
 mod trace;
+mod unpack;
 mod unread;
 mod uploads;
 

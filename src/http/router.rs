@@ -11,7 +11,6 @@ use axum::middleware::{self, Next};
 use axum::response::{IntoResponse as _, Response};
 use axum::routing::get;
 use tower_http::compression::CompressionLayer;
-use tower_http::decompression::RequestDecompressionLayer;
 use utoipa::openapi::OpenApi;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -23,6 +22,7 @@ use super::scope::Scopes;
 use super::settings::HttpSettings;
 use super::state::{Caller, HttpService, State};
 use super::tenant::{client, tenant};
+use super::unpack::unpack;
 use super::{
     about, contract, cors, deliveries, docs, events, framing, lifecycle, listing, operations, page,
     presigned, uploads,
@@ -110,9 +110,7 @@ pub(super) fn service(settings: HttpSettings, jobs: Jobs) -> Arc<HttpService> {
 
 /// The router of the public listener.
 pub(super) fn router(service: Arc<HttpService>) -> Router {
-    // Bodies of other encodings come in as they are, and are refused where they are read.
-    let unpacked = RequestDecompressionLayer::new().pass_through_unaccepted(true);
-    let (api, _) = api().layer(unpacked).split_for_parts();
+    let (api, _) = api().layer(middleware::map_request(unpack)).split_for_parts();
     let let_in = middleware::from_fn_with_state(Arc::clone(&service), let_in);
     let cors = cors::layer(&service.settings.cors_origins);
     let routes = complete(api.merge(pages()).with_state(service)).layer(let_in);

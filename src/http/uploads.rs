@@ -33,6 +33,7 @@ const RESUMABLE: HeaderName = HeaderName::from_static("tus-resumable");
 const VERSIONS: HeaderName = HeaderName::from_static("tus-version");
 const EXTENSION: HeaderName = HeaderName::from_static("tus-extension");
 const MAX_SIZE: HeaderName = HeaderName::from_static("tus-max-size");
+const CONCAT: HeaderName = HeaderName::from_static("upload-concat");
 const LENGTH: HeaderName = HeaderName::from_static("upload-length");
 const OFFSET: HeaderName = HeaderName::from_static("upload-offset");
 const METADATA: HeaderName = HeaderName::from_static("upload-metadata");
@@ -92,10 +93,14 @@ pub(super) async fn create(state: State, caller: Extension<Caller>, request: Req
     if brings_bytes {
         let pieces = state.jobs.receive_pieces(row.id, row.owner.as_deref(), 0).await?;
         // The upload is there: a client that hears of no offset asks where it stands.
-        if let Ok(pieces) = received(&state, pieces, &head.headers, body).await {
-            (row.received, row.expires_at) = (pieces.received(), pieces.expires_at());
-        } else {
-            row = state.jobs.get_upload(row.id, caller.owner.as_deref()).await?;
+        match received(&state, pieces, &head.headers, body).await {
+            Ok(pieces) => (row.received, row.expires_at) = (pieces.received(), pieces.expires_at()),
+            // The client does not know its own length.
+            Err(problem) if problem.code == ProblemCode::BodyTooLarge => {
+                state.jobs.delete_upload(row.id, caller.owner.as_deref()).await?;
+                return Err(problem.into());
+            }
+            Err(_) => row = state.jobs.get_upload(row.id, caller.owner.as_deref()).await?,
         }
     }
     let place = [(header::LOCATION, format!("/v1/uploads/{}", row.id))];
@@ -275,6 +280,10 @@ fn length(headers: &HeaderMap) -> Result<u64, Problem> {
     if headers.contains_key("upload-defer-length") {
         let detail = "the length of an upload is said when it begins, in `Upload-Length`";
         return Err(about(&LENGTH, Problem::new(ProblemCode::InvalidParameter, detail)));
+    }
+    if headers.contains_key(CONCAT) {
+        let detail = "uploads are not put together of others here";
+        return Err(about(&CONCAT, Problem::new(ProblemCode::InvalidParameter, detail)));
     }
     number(headers, &LENGTH)
 }

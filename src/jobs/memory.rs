@@ -1,6 +1,7 @@
 //! How much memory this process may use.
 
 use std::fs;
+use std::path::{Path, PathBuf};
 
 /// Three quarters of the memory that this process may use: of the machine, or of its control group.
 pub(super) fn default_bytes_max() -> u64 {
@@ -10,10 +11,29 @@ pub(super) fn default_bytes_max() -> u64 {
     total.min(group_limit().unwrap_or(u64::MAX)) / 4 * 3
 }
 
-/// The limit of the control group, of either version of the interface.
+/// The lowest limit of the control groups that this process is in, of either version of the interface.
 fn group_limit() -> Option<u64> {
-    const FILES: [&str; 2] = ["/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"];
-    FILES.iter().find_map(|file| limit_in(&fs::read_to_string(file).ok()?))
+    let groups = fs::read_to_string("/proc/self/cgroup").unwrap_or_default();
+    limit_files(&groups).iter().filter_map(|file| limit_in(&fs::read_to_string(file).ok()?)).min()
+}
+
+/// Where the limits of the groups stand that `/proc/self/cgroup` names, and of those around them. In a container the mount begins with
+/// its own group, whatever that is called outside.
+fn limit_files(groups: &str) -> Vec<PathBuf> {
+    let files = groups.lines().filter_map(|line| {
+        let mut fields = line.splitn(3, ':').skip(1);
+        let (controllers, group) = (fields.next()?, fields.next()?);
+        let (mount, file) = match controllers {
+            "" => ("/sys/fs/cgroup", "memory.max"),
+            _ if controllers.split(',').any(|name| name == "memory") => {
+                ("/sys/fs/cgroup/memory", "memory.limit_in_bytes")
+            }
+            _ => return None,
+        };
+        let own = Path::new(group.trim_start_matches('/'));
+        Some(own.ancestors().map(move |group| Path::new(mount).join(group).join(file)))
+    });
+    files.flatten().collect()
 }
 
 /// A number of bytes; other words, and numbers beyond any memory, mean that there is no limit.
@@ -30,6 +50,28 @@ mod tests {
         assert_eq!(limit_in("1073741824\n"), Some(1 << 30));
         assert_eq!(limit_in("max\n"), None);
         assert_eq!(limit_in("9223372036854771712\n"), None);
+    }
+
+    #[test]
+    fn the_groups_of_a_process_and_those_around_them_are_asked() {
+        let of =
+            |groups| limit_files(groups).iter().map(|file| file.display().to_string()).collect::<Vec<_>>();
+        let service = "1:name=systemd:/a\n0::/system.slice/meshmend.service\n";
+        assert_eq!(
+            of(service),
+            [
+                "/sys/fs/cgroup/system.slice/meshmend.service/memory.max",
+                "/sys/fs/cgroup/system.slice/memory.max",
+                "/sys/fs/cgroup/memory.max"
+            ]
+        );
+        let older = [
+            "/sys/fs/cgroup/memory/jobs/memory.limit_in_bytes",
+            "/sys/fs/cgroup/memory/memory.limit_in_bytes",
+        ];
+        assert_eq!(of("9:cpu,cpuacct:/jobs\n4:memory:/jobs\n"), older);
+        assert_eq!(of("0::/\n"), ["/sys/fs/cgroup/memory.max"]);
+        assert!(of("").is_empty() && of("nonsense").is_empty());
     }
 
     #[test]

@@ -54,6 +54,18 @@ pub(super) fn disk_problem(error: &io::Error) -> Problem {
     }
 }
 
+/// A failure in the folder of a process. One that somebody removed costs the job a run.
+pub(super) fn workspace_problem(error: &io::Error) -> Problem {
+    match error.kind() {
+        // The sandbox of a process does not know a folder that was made again.
+        io::ErrorKind::NotFound | io::ErrorKind::PermissionDenied => {
+            tracing::error!(%error, "the folder of a process was removed");
+            Problem::new(ProblemCode::WorkerLost, "the folder of the process that ran the job was removed")
+        }
+        _ => disk_problem(error),
+    }
+}
+
 /// A store's failure as the caller hears it.
 pub(super) fn store_problem(error: &StoreError) -> Problem {
     match error {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::child::MadeFile;
-use super::problems::{disk_problem, internal};
+use super::problems::{internal, workspace_problem};
 use super::spool::{Spool, Written};
 use super::store::ClaimRef;
 use crate::pipeline::{self, Answer};
@@ -107,7 +107,7 @@ impl RunProduct<MadeFile> {
         self.try_map(|file| {
             let room = spool.reserve(file.bytes).filter(|_| !spool.is_disk_short_of(file.bytes));
             let Some(space) = room else { return Ok(Content::File(file)) };
-            spool.adopt(claim, &file, space).map(Content::Kept).map_err(|error| disk_problem(&error))
+            spool.adopt(claim, &file, space).map(Content::Kept).map_err(|error| workspace_problem(&error))
         })
     }
 }

@@ -31,6 +31,10 @@ pub(super) fn told(refusal: &BooleanRefusal) -> (ReasonCode, String) {
             let message = format!("{count} or more pairs of triangles meet, and {limit} at most are divided");
             (ReasonCode::NotCombined, message)
         }
+        NotCombined::TooManyCrossings { limit } => {
+            let message = format!("triangles cross each other inside of others at more than {limit} points");
+            (ReasonCode::NotCombined, message)
+        }
         NotCombined::BeyondFloat32 => {
             (ReasonCode::NotRepresentable, "the coordinates are beyond those of float32".to_owned())
         }

@@ -20,6 +20,9 @@ const VALUE_CHARS_MAX: usize = 255;
 /// Names of labels.
 const NAME_PATTERN: &str = "^[A-Za-z0-9._/-]{1,63}$";
 
+/// Values of labels.
+const VALUE_PATTERN: &str = r"^[^\u0000-\u001F\u007F-\u009F]*$";
+
 /// The labels of a JSON object.
 ///
 /// # Errors
@@ -45,13 +48,13 @@ fn is_name(name: &str) -> bool {
 }
 
 fn is_value(value: &str) -> bool {
-    value.chars().count() <= VALUE_CHARS_MAX
+    value.chars().count() <= VALUE_CHARS_MAX && !value.contains(char::is_control)
 }
 
 pub(super) fn about_labels() -> Problem {
     let expected = format!(
         "an object of at most {LABELS_MAX} texts: names of 1 to {NAME_CHARS_MAX} letters, digits and ._/-, values of at \
-         most {VALUE_CHARS_MAX} characters"
+         most {VALUE_CHARS_MAX} characters, none of which is a control character"
     );
     Problem {
         parameter: Some("labels".to_owned()),
@@ -65,7 +68,10 @@ pub(super) fn about_labels() -> Problem {
 
 /// Schema of labels in a request.
 pub(super) fn labels_schema() -> Schema {
-    let value = ObjectBuilder::new().schema_type(Type::String).max_length(Some(VALUE_CHARS_MAX));
+    let value = ObjectBuilder::new()
+        .schema_type(Type::String)
+        .max_length(Some(VALUE_CHARS_MAX))
+        .pattern(Some(VALUE_PATTERN));
     let name = ObjectBuilder::new().schema_type(Type::String).pattern(Some(NAME_PATTERN));
     let labels = ObjectBuilder::new()
         .schema_type(Type::Object)
@@ -91,6 +97,7 @@ mod tests {
             json!({"a": 1}),
             json!({"": "x"}),
             json!({"a b": "x"}),
+            json!({"a": "x\u{0}"}),
             json!({"x": "y".repeat(VALUE_CHARS_MAX + 1)}),
             json!({"x".repeat(NAME_CHARS_MAX + 1): ""}),
             json!(many),

@@ -2,9 +2,12 @@
 
 use crate::ends::{goes_on, problem_of, server};
 use crate::meshes::OPEN;
+use crate::server::Server;
+use crate::supervision::waiting_of;
 use rustix::process::{Resource, Rlimit, Signal, getppid, getrlimit, setrlimit, test_kill_process};
 use serde_json::json;
 use std::net::{TcpListener, TcpStream, UdpSocket};
+use std::os::unix::fs::PermissionsExt as _;
 use std::os::unix::net::UnixDatagram;
 use std::process::Command;
 
@@ -59,6 +62,36 @@ pub(crate) fn a_confined_process_reaches_nothing() {
         let problem = problem_of(&server, "reach");
         assert_eq!(problem["expected"], "reached: ", "{problem}");
         goes_on(&server);
+    }
+}
+
+pub(crate) fn a_process_inherits_no_descriptor_and_has_no_capability() {
+    let folder = tempfile::tempdir().unwrap();
+    let (script, secret) = (folder.path().join("server"), folder.path().join("secret"));
+    std::fs::write(&secret, "secret").unwrap();
+    let own = std::env::current_exe().unwrap();
+    let words = format!("#!/bin/sh\nexec 7<'{}'\nexec '{}' \"$@\"\n", secret.display(), own.display());
+    std::fs::write(&script, words).unwrap();
+    std::fs::set_permissions(&script, std::fs::Permissions::from_mode(0o700)).unwrap();
+    let server = Server::of(&script, &[]);
+    let waiting = waiting_of(&server, 0);
+    let open = |pid: u32| {
+        let descriptors = std::fs::read_dir(format!("/proc/{pid}/fd")).unwrap();
+        descriptors.filter_map(|entry| std::fs::read_link(entry.ok()?.path()).ok()).collect::<Vec<_>>()
+    };
+    assert!(open(server.pid()).contains(&secret), "the server was not started with the descriptor");
+    assert!(!open(waiting).contains(&secret), "{:?}", open(waiting));
+    if server.log().contains("no landlock, no seccomp filter") {
+        return;
+    }
+    let status = std::fs::read_to_string(format!("/proc/{waiting}/status")).unwrap();
+    let sets: Vec<&str> = status.lines().filter(|line| line.starts_with("Cap")).collect();
+    let held = |line: &&str| u64::from_str_radix(line.split_whitespace().last().unwrap(), 16).unwrap();
+    let is_bounding = |line: &&&str| line.starts_with("CapBnd");
+    assert_eq!(sets.iter().filter(|line| !is_bounding(line)).map(held).max(), Some(0), "{sets:?}");
+    // Only who may, which root may, takes capabilities out of the bounding set.
+    if rustix::process::geteuid().is_root() {
+        assert_eq!(sets.iter().find(is_bounding).map(held), Some(0), "{sets:?}");
     }
 }
 

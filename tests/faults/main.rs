@@ -70,9 +70,11 @@ fn trials() -> Vec<Trial> {
             a_task_that_is_longer_than_a_pipe_holds_comes_through_whole,
             a_server_that_ends_in_order_leaves_no_process_and_no_folder,
             a_large_result_does_not_pass_through_the_memory_of_the_server,
+            a_job_whose_folder_is_removed_runs_again,
         },
         confinement::{
             a_confined_process_reaches_nothing,
+            a_process_inherits_no_descriptor_and_has_no_capability,
             without_a_sandbox_the_limits_still_hold,
             a_sandbox_that_is_required_needs_a_process,
             threads_know_no_process,

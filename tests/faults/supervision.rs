@@ -68,13 +68,22 @@ pub(crate) fn a_server_that_is_killed_leaves_no_process() {
 
 /// A living process that waits for the next task, and is not `but`. It is known by its name, which it has once it can be
 /// stopped: a server waits for a process that is about to become another program.
-fn waiting_of(server: &Server, but: u32) -> u32 {
+pub(crate) fn waiting_of(server: &Server, but: u32) -> u32 {
     let waits = |pid| {
         let name = std::fs::read_to_string(format!("/proc/{pid}/comm")).ok();
         name.as_deref() == Some("meshmend-waits\n")
             && parent_and_state(pid).is_some_and(|(_, state)| state != 'Z')
     };
     patiently(|| all_children_of(server).into_iter().find(|&pid| pid != but && waits(pid)))
+}
+
+pub(crate) fn a_job_whose_folder_is_removed_runs_again() {
+    let server = Server::of(&std::env::current_exe().unwrap(), &["--slots", "1"]);
+    let job = server.job("repair", crate::meshes::long_job(60));
+    child_of(&server);
+    std::fs::remove_dir_all(server.data_dir().join("work")).unwrap();
+    let ended = server.ended(&job);
+    assert_eq!((&ended["state"], &ended["attempts"]), (&json!("succeeded"), &json!(1)), "{ended}");
 }
 
 pub(crate) fn a_process_that_is_killed_while_it_waits_costs_no_job() {

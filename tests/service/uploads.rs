@@ -386,6 +386,10 @@ fn a_compressed_body_is_taken_and_counts_by_what_it_holds() {
         (&report["verdict"]["printable"], &report["input"]["bytes"]),
         (&json!(true), &json!(SOLID.len()))
     );
+    let (first, second) = SOLID.split_at(SOLID.len() / 2);
+    let members = [gzip(first.as_bytes()), gzip(second.as_bytes())].concat();
+    let report: Value = send(members, "gzip").json().unwrap();
+    assert_eq!(report["input"]["bytes"], json!(SOLID.len()), "two members");
     let large = [SOLID.as_bytes(), &[b'#'; 2000]].concat();
     assert_eq!(problem(send(gzip(&large), "gzip")).1, "body-too-large");
     let packed = gzip(SOLID.as_bytes());

@@ -3,6 +3,8 @@
 mod cases;
 mod oracle;
 
+use super::constraints::BYTES_OF_CROSSING;
+use super::point::Definition;
 use super::{Arrangement, ArrangementError, ArrangementOptions, PlacedBoundary, arrange, arrange_enclosed};
 use crate::budget::{Budget, StopFlag, Stopped};
 use crate::geom::{DVec3, Sign, are_collinear};
@@ -149,7 +151,9 @@ fn what_random_solids_enclose_is_their_union_whichever_way_their_triangles_turn(
             let mut turned = bodies.triangles.clone();
             turned.iter_mut().filter(|_| random.below(2) == 0).for_each(|corners| corners.swap(0, 1));
             let budget = Budget::unlimited();
-            let enclosed = arrange_enclosed(&bodies.positions, &turned, 1 << 20, &budget).unwrap();
+            let enclosed =
+                arrange_enclosed(&bodies.positions, &turned, &ArrangementOptions::default(), &budget)
+                    .unwrap();
             let groups = EdgeGroups::build(enclosed.pieces(), enclosed.point_count(), &budget).unwrap();
             // Parts of their own are not united.
             if groups.components(&budget).unwrap().count > 1 {
@@ -193,6 +197,23 @@ fn the_same_pieces_with_1_2_and_8_threads() {
 }
 
 #[test]
+fn points_where_constraints_cross_are_charged() {
+    let bodies = cases::crowd(&mut Random::new(3), 40);
+    let budget = Budget::unlimited();
+    let operand_of = |t: u32| bodies.operands[t as usize];
+    let options = ArrangementOptions { operands: 2, ..ArrangementOptions::default() };
+    let arrangement = arrange(&bodies.positions, &bodies.triangles, operand_of, &options, &budget).unwrap();
+    let points = arrangement.clusters.iter().flat_map(|cluster| &cluster.points);
+    let crossings = points.filter(|point| matches!(point.definition, Definition::Planes(_))).count() as u64;
+    assert!(crossings > 500, "{crossings} crossings");
+    let peak = budget.bytes_peak();
+    assert!(peak > crossings * BYTES_OF_CROSSING, "{peak} bytes for {crossings} crossings");
+    let few = ArrangementOptions { crossings_max: crossings as usize, ..options };
+    let refused = arrange(&bodies.positions, &bodies.triangles, operand_of, &few, &budget).map(|_| ());
+    assert_eq!(refused, Err(ArrangementError::TooManyCrossings { limit: crossings }));
+}
+
+#[test]
 fn coordinates_of_every_size_are_taken_as_they_are() {
     for (scale, shift) in
         [(1e-30, 0.0), (1e150, 0.0), (1.0, 1e6), (0.1, 0.3), (1e-200, 1e-180), (1e-307, 0.0)]
@@ -218,7 +239,7 @@ fn what_is_open_too_much_or_stopped_is_refused_as_such() {
     let mut open = Bodies::default();
     open.add(cube([0, 0, 0], [2, 2, 2], 0), 0);
     open.add(cube([1, 1, 1], [3, 3, 3], 0), 0);
-    let pairs = ArrangementOptions { pairs_max: 3, operands: 2 };
+    let pairs = ArrangementOptions { pairs_max: 3, operands: 2, ..ArrangementOptions::default() };
     let run = |bodies: &Bodies, options: &ArrangementOptions, budget: &Budget| {
         let operand_of = |t: u32| bodies.operands[t as usize];
         arrange(&bodies.positions, &bodies.triangles, operand_of, options, budget).map(|_| ())

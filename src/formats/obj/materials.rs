@@ -2,7 +2,8 @@
 
 use super::statements::DIALECT;
 use crate::budget::{Budget, CHECK_EVERY};
-use crate::formats::words::Words;
+use crate::formats::foreign::wide_text;
+use crate::formats::words::{Words, check_text};
 use crate::formats::{Place, ReadError};
 use crate::mesh::{Color, Soup};
 use rustc_hash::FxHashMap;
@@ -38,6 +39,11 @@ pub fn color_faces(soup: &mut Soup, obj: &[u8], mtl: &[u8], budget: &Budget) -> 
 
 /// Diffuse colours by material name.
 fn diffuse_colors(mtl: &[u8]) -> Result<FxHashMap<String, Color>, ReadError> {
+    let expected = "a material file in UTF-8, without zero bytes";
+    if let Some(found) = wide_text(mtl) {
+        return Err(ReadError::unparseable(Place::Whole, found, expected));
+    }
+    check_text(mtl).map_err(|error| ReadError { expected: expected.to_owned(), ..error })?;
     // Names in other encodings than UTF-8 still match, because the OBJ file's are replaced alike.
     let text = String::from_utf8_lossy(mtl);
     let load = || tobj::load_mtl_buf(&mut text.as_bytes());
@@ -75,6 +81,19 @@ mod tests {
         let red = Color::Floats([1.0, 0.25, 0.0], Some(0.5));
         let found = colors(b"newmtl r\xF6t\nKd 1 0.25 0\nd 0.5\nmap_Kd a.png\nnewmtl plain\n").unwrap();
         assert_eq!(found, [None, Some(red), Some(red), None]);
+    }
+
+    #[test]
+    fn a_material_file_in_wide_letters_or_with_zero_bytes_is_an_error() {
+        let text = "newmtl r\nKd 1 0 0\n";
+        let little: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
+        let big: Vec<u8> = text.encode_utf16().flat_map(u16::to_be_bytes).collect();
+        for wide in [little, big] {
+            let told = colors(&wide).unwrap_err().to_string();
+            assert_eq!(told, "found text in UTF-16; expected a material file in UTF-8, without zero bytes");
+        }
+        let told = colors(b"newmtl a\nKd 1\0 0 0\n").unwrap_err().to_string();
+        assert_eq!(told, "line 2: found a zero byte; expected a material file in UTF-8, without zero bytes");
     }
 
     #[test]

@@ -77,6 +77,8 @@ const RUN: &[ProblemCode] = &[
 const MESH_OUT: &[ProblemCode] = &[ProblemCode::NotRepairable, ProblemCode::MeshNonFinite];
 /// Problems of a path that names a job.
 const JOB: &[ProblemCode] = &[ProblemCode::NotFound, ProblemCode::StoreUnavailable];
+/// Further problems of a path that changes a job.
+const CHANGE: &[ProblemCode] = &[ProblemCode::StorageFull];
 /// Problems of what a job has produced.
 const PRODUCT: &[ProblemCode] = &[ProblemCode::JobNotFinished, ProblemCode::Expired];
 
@@ -207,6 +209,7 @@ fn complete_operation(path: &str, operation: &mut Operation) {
         "create_upload" | "append_to_upload" | "get_upload" | "delete_upload" | "create_presigned_upload" => {
             uploads::complete(&id, operation);
         }
+        "cancel_job" | "delete_job" => add_problems(operation, &[JOB, CHANGE].concat()),
         _ if path.starts_with("/v1/jobs/") => add_problems(operation, JOB),
         _ => {}
     }

@@ -7,7 +7,7 @@ use sha2::{Digest as _, Sha256};
 
 use super::task::FileMade;
 use super::workspace::Rooms;
-use crate::jobs::problems::disk_problem;
+use crate::jobs::problems::workspace_problem;
 use crate::jobs::product::RunProduct;
 use crate::par;
 use crate::wire::{Problem, ProblemCode};
@@ -46,7 +46,7 @@ impl Files {
         // Not `create_new` alone: that asks to read as well, which the sandbox does not grant.
         let write = || File::options().write(true).create_new(true).open(&path)?.write_all(content);
         let (written, sha256) = par::join(write, || Sha256::digest(content).into());
-        written.map_err(|error| disk_problem(&error))?;
+        written.map_err(|error| workspace_problem(&error))?;
         Ok(FileMade { number, bytes, sha256 })
     }
 }

@@ -13,7 +13,7 @@ use super::task::{ChildMessage, ChildSetup, FileMade, Task};
 use super::workspace::Rooms;
 use crate::budget::{Budget, ProgressEvent, StopFlag};
 use crate::jobs::clock::StageClock;
-use crate::jobs::problems::{disk_problem, engine_crashed};
+use crate::jobs::problems::{engine_crashed, workspace_problem};
 use crate::jobs::product::RunProduct;
 use crate::par;
 use crate::pipeline::{self, Answer, Failure};
@@ -100,9 +100,9 @@ fn run(task: &Task, files: &Files, engine: &EngineFunction) -> Result<RunProduct
     let (mut content, _charge) = budget.vec(task.input_bytes as usize).map_err(stopped)?;
     File::open(files.rooms.mesh())
         .and_then(|mut mesh| mesh.read_to_end(&mut content))
-        .map_err(|error| disk_problem(&error))?;
+        .map_err(|error| workspace_problem(&error))?;
     let material = task.has_material.then(|| std::fs::read(files.rooms.material()));
-    options.material = material.transpose().map_err(|error| disk_problem(&error))?;
+    options.material = material.transpose().map_err(|error| workspace_problem(&error))?;
     let answer = engine(task.operation.into(), content, &options, &budget)
         .map_err(|failure| Problem::from(&failure))?;
     files.write(RunProduct::of(answer, clock.timing_ms())?)

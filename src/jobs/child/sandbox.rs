@@ -3,6 +3,8 @@
 use std::fmt;
 use std::io;
 
+use rustix::io::Errno;
+use rustix::thread::{CapabilitySet, CapabilitySets};
 use serde::{Deserialize, Serialize};
 
 use super::workspace::Rooms;
@@ -53,6 +55,7 @@ impl Sandbox {
             return Ok(Protections::default());
         }
         rustix::thread::set_no_new_privs(true)?;
+        drop_capabilities()?;
         let landlock_abi = files::confine_to(rooms)?;
         let is_filtered = calls::confine()?;
         let protections = Protections { landlock_abi, is_filtered };
@@ -64,4 +67,21 @@ impl Sandbox {
         }
         Ok(protections)
     }
+}
+
+/// Gives up all that root may do beyond other users, for good. A process of another user has none of it to give up.
+fn drop_capabilities() -> io::Result<()> {
+    for capability in CapabilitySet::all().iter() {
+        match rustix::thread::remove_capability_from_bounding_set(capability) {
+            // Of another user; or an older kernel does not know it.
+            Ok(()) | Err(Errno::PERM | Errno::INVAL) => {}
+            Err(error) => return Err(error.into()),
+        }
+    }
+    let none = CapabilitySet::empty();
+    rustix::thread::set_capabilities(
+        None,
+        CapabilitySets { effective: none, permitted: none, inheritable: none },
+    )?;
+    Ok(())
 }

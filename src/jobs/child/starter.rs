@@ -12,6 +12,9 @@ use super::workspace::Workspaces;
 /// How much children step back behind the server, from 0 to 19: also while they start.
 const NICENESS: i32 = 5;
 
+/// The first descriptor that is none of standard input, output and error.
+const FIRST_BESIDE_STREAMS: i32 = 3;
+
 /// Starts children. The kernel ends a child with the thread that started it, so this one lives as long as the server.
 #[derive(Debug)]
 pub(super) struct Starter {
@@ -37,6 +40,8 @@ type Ask = Option<mpsc::SyncSender<io::Result<Running>>>;
 impl Starter {
     /// Starts the thread, and the first child.
     pub(super) fn open(setting: ChildSetup, workspaces: Workspaces) -> io::Result<Self> {
+        // What this process was started with besides its standard streams is no child's: its own descriptors close by themselves.
+        close_fds::set_fds_cloexec_threadsafe(FIRST_BESIDE_STREAMS, &[]);
         let (asks, asked) = mpsc::channel();
         let spare = Arc::new(Spare::default());
         let shared = Arc::clone(&spare);

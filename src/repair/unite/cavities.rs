@@ -26,7 +26,8 @@ pub(super) struct TurnedShells {
 }
 
 /// Turns the closed shells that point inward, unless they are cavities. A shell that is nowhere outside of the bodies around it is a
-/// cavity of theirs, also where it reaches their surface from within; one in a larger cavity is a body again. Shells are those
+/// cavity of theirs, also where it reaches their surface from within; one in a larger cavity is a body again. Where all that points
+/// outward would be a cavity if every shell turned, the file is inside out as a whole, and every shell is turned. Shells are those
 /// connected by edges, so that bodies that share an edge count as one.
 pub(super) fn turn_inverted(draft: &mut Draft, budget: &Budget) -> Result<TurnedShells, Stopped> {
     let groups = EdgeGroups::build(&draft.triangles, draft.positions.len(), budget)?;
@@ -59,37 +60,35 @@ pub(super) fn turn_inverted(draft: &mut Draft, budget: &Budget) -> Result<Turned
         let bounds = Aabb::of(members.of(part).iter().flat_map(|&t| draft.corners(t as usize)));
         (bounds.max - bounds.min).length()
     };
-    let sizes: Vec<f64> =
-        (0..parts.count as usize).map(|part| if is_inverted[part] { size(part) } else { 0.0 }).collect();
-    let shells = DraftShells {
-        draft,
-        of: &parts.of,
-        members: &members,
-        is_inverted: &is_inverted,
-        sizes: &sizes,
-        bvh: &bvh,
-        budget,
-    };
-    let mut kinds: Vec<ShellKind> = is_closed
-        .iter()
-        .map(|&is_closed| if is_closed { ShellKind::Body } else { ShellKind::Open })
-        .collect();
-    let mut turned = Vec::new();
-    for part in (0..parts.count as usize).filter(|&part| is_inverted[part]) {
-        if shells.is_cavity(part)? {
-            kinds[part] = ShellKind::Cavity;
-        } else {
-            turned.push(part);
-        }
+    let closed: Vec<usize> = (0..parts.count as usize).filter(|&part| is_closed[part]).collect();
+    let mut sizes = vec![0.0; parts.count as usize];
+    for &part in &closed {
+        sizes[part] = size(part);
     }
-    for &part in &turned {
-        for &t in members.of(part) {
+    let turn = |draft: &mut Draft, shells: &[usize]| {
+        for &t in shells.iter().flat_map(|&part| members.of(part)) {
             draft.flip(t as usize);
         }
+    };
+    let divide = |draft: &Draft, is_inverted: &[bool]| {
+        let (of, members, sizes, bvh) = (&parts.of[..], &members, &sizes[..], &bvh);
+        DraftShells { draft, of, members, is_inverted, sizes, bvh, budget }.divide_inverted()
+    };
+    let largest = closed.iter().copied().max_by(|&a, &b| sizes[a].total_cmp(&sizes[b]));
+    if largest.is_some_and(|part| is_inverted[part]) {
+        turn(draft, &closed);
+        let is_outward: Vec<bool> = is_closed.iter().zip(&is_inverted).map(|(&c, &i)| c && !i).collect();
+        let (cavities, bodies) = divide(draft, &is_outward)?;
+        if bodies.is_empty() {
+            let with_cavities = CavityShells::of_parts(parts.of, &is_closed, &cavities);
+            return Ok(TurnedShells { count: closed.len() as u64, with_cavities });
+        }
+        turn(draft, &closed);
     }
-    let has_cavities = kinds.contains(&ShellKind::Cavity);
-    let with_cavities = has_cavities.then_some(CavityShells { of: parts.of, kinds });
-    Ok(TurnedShells { count: turned.len() as u64, with_cavities })
+    let (cavities, bodies) = divide(draft, &is_inverted)?;
+    turn(draft, &bodies);
+    let with_cavities = CavityShells::of_parts(parts.of, &is_closed, &cavities);
+    Ok(TurnedShells { count: bodies.len() as u64, with_cavities })
 }
 
 /// What a shell is.
@@ -111,6 +110,16 @@ pub(super) struct CavityShells {
 }
 
 impl CavityShells {
+    /// The shells, where some are cavities. `of` is the shell of each triangle.
+    fn of_parts(of: Vec<u32>, is_closed: &[bool], cavities: &[usize]) -> Option<Self> {
+        let kind = |&is_closed: &bool| if is_closed { ShellKind::Body } else { ShellKind::Open };
+        let mut kinds: Vec<ShellKind> = is_closed.iter().map(kind).collect();
+        for &part in cavities {
+            kinds[part] = ShellKind::Cavity;
+        }
+        (!cavities.is_empty()).then_some(Self { of, kinds })
+    }
+
     /// Number of shells.
     pub(super) fn count(&self) -> usize {
         self.kinds.len()
@@ -147,7 +156,7 @@ struct DraftShells<'s> {
     of: &'s [u32],
     members: &'s ShellTriangles,
     is_inverted: &'s [bool],
-    /// The diagonal of the box of each shell that points inward.
+    /// The diagonal of the box of each closed shell.
     sizes: &'s [f64],
     bvh: &'s Bvh,
     budget: &'s Budget,
@@ -164,6 +173,16 @@ struct Around {
 }
 
 impl DraftShells<'_> {
+    /// The shells that point inward: the cavities, and those that are bodies inside out.
+    fn divide_inverted(&self) -> Result<(Vec<usize>, Vec<usize>), Stopped> {
+        let (mut cavities, mut bodies) = (Vec::new(), Vec::new());
+        for part in (0..self.is_inverted.len()).filter(|&part| self.is_inverted[part]) {
+            let kind = if self.is_cavity(part)? { &mut cavities } else { &mut bodies };
+            kind.push(part);
+        }
+        Ok((cavities, bodies))
+    }
+
     /// True when all that is in `part`, which points inward, is in bodies, and not all of it in their cavities.
     fn is_cavity(&self, part: usize) -> Result<bool, Stopped> {
         let own = self.members.of(part);
@@ -251,6 +270,23 @@ mod tests {
             // Where both are the winding number is below 0.
             assert_eq!((volume, changes.count("shells_turned")), (512.0 - 15.0, 0));
         }
+    }
+
+    #[test]
+    fn a_file_that_is_inside_out_as_a_whole_keeps_its_cavities() {
+        let body = (DVec3::ZERO, 8.0, true);
+        // Beside each other, through each other, and a body in one of them.
+        for (inner, volume) in [
+            (vec![(DVec3::ONE, 2.0, false), (DVec3::new(3.0, 1.0, 1.0), 2.0, false)], 512.0 - 16.0),
+            (vec![(DVec3::ONE, 2.0, false), (DVec3::splat(2.0), 2.0, false)], 512.0 - 15.0),
+            (vec![(DVec3::ONE, 4.0, false), (DVec3::splat(2.0), 1.0, true)], 512.0 - 64.0 + 1.0),
+        ] {
+            let (found, changes) = united(&[&[body][..], &inner].concat());
+            assert_eq!((found, changes.count("shells_turned")), (volume, 3), "{inner:?}");
+        }
+        // Not as a whole: a body beside it points outward.
+        let (volume, changes) = united(&[body, (DVec3::ONE, 2.0, false), (DVec3::splat(9.0), 1.0, false)]);
+        assert_eq!((volume, changes.count("shells_turned")), (513.0, 1));
     }
 
     #[test]

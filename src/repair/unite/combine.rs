@@ -54,6 +54,11 @@ pub enum NotCombined {
         /// How many may.
         limit: u64,
     },
+    /// Triangles cross each other inside of others at more points than are found.
+    TooManyCrossings {
+        /// At how many they may.
+        limit: u64,
+    },
     /// Float32 does not go so far.
     BeyondFloat32,
     /// What must hold by construction does not: a fault of the arrangement.
@@ -71,6 +76,7 @@ impl From<ArrangementError> for NotCombined {
         match error {
             ArrangementError::Stopped(stopped) => Self::Stopped(stopped),
             ArrangementError::TooManyPairs { count, limit } => Self::TooManyPairs { count, limit },
+            ArrangementError::TooManyCrossings { limit } => Self::TooManyCrossings { limit },
             ArrangementError::NotClosed { operand, edges } => {
                 Self::NotSolid { input: usize::from(operand), why: NotSolid::Open { edges } }
             }

@@ -34,6 +34,12 @@ const PAIRS_OF_SMALL_MAX: usize = 3 << 18;
 const PAIRS_PER_TRIANGLE_OF_LARGE: usize = 8;
 const PAIRS_OF_LARGE_MAX: usize = 1 << 21;
 
+/// Most points where triangles cross each other inside of others, in drafts of up to about 100,000 triangles, and in larger ones
+/// for each triangle and in all: each takes about 250 bytes.
+const CROSSINGS_OF_SMALL_MAX: usize = 3 << 20;
+const CROSSINGS_PER_TRIANGLE_OF_LARGE: usize = 32;
+const CROSSINGS_OF_LARGE_MAX: usize = 1 << 23;
+
 /// Share of the surface of a body that may be mouths.
 const MOUTHS_MAX: f64 = 0.5;
 
@@ -196,13 +202,16 @@ fn arranged_by(
     operand_of: impl Fn(u32) -> u8 + Sync,
     budget: &Budget,
 ) -> Result<Arrangement, ArrangementError> {
-    let options = ArrangementOptions { pairs_max: pairs_max(draft), operands };
+    let options = options(draft, operands);
     arrange(&draft.positions, &draft.triangles, operand_of, &options, budget)
 }
 
-/// Most pairs of triangles of a draft that may meet.
-fn pairs_max(draft: &Draft) -> usize {
-    pairs_of(draft.triangles.len())
+/// What the arrangement of a draft may cost.
+fn options(draft: &Draft, operands: u8) -> ArrangementOptions {
+    let triangles = draft.triangles.len();
+    let crossings_max =
+        (triangles * CROSSINGS_PER_TRIANGLE_OF_LARGE).clamp(CROSSINGS_OF_SMALL_MAX, CROSSINGS_OF_LARGE_MAX);
+    ArrangementOptions { pairs_max: pairs_of(triangles), crossings_max, operands }
 }
 
 fn pairs_of(triangles: usize) -> usize {
