@@ -104,6 +104,44 @@ def beams_in_three_directions(n):
     return stl(all_of_them)
 
 
+def anyhow(r, triangles):
+    """The triangles after a random rotation about the origin."""
+    a, b, c, d = q = [r.gauss(0, 1) for _ in range(4)]
+    s = 2 / sum(x * x for x in q)
+    rows = (
+        (1 - s * (c * c + d * d), s * (b * c - a * d), s * (b * d + a * c)),
+        (s * (b * c + a * d), 1 - s * (b * b + d * d), s * (c * d - a * b)),
+        (s * (b * d - a * c), s * (c * d + a * b), 1 - s * (b * b + c * c)),
+    )
+    return [tuple(sum(m * x for m, x in zip(row, t[k : k + 3])) for k in (0, 3, 6) for row in rows) for t in triangles]
+
+
+def prism(sides, radius, low, high, tip=1.0):
+    """A prism along z; its lower end is `tip` times as wide."""
+    ends = [(math.cos(2 * math.pi * i / sides), math.sin(2 * math.pi * i / sides)) for i in range(sides)]
+    bottom, top = [[(w * x, w * y, z) for x, y in ends] for w, z in ((radius * tip, low), (radius, high))]
+    around = [(i, (i + 1) % sides) for i in range(sides)]
+    walls = [t for i, j in around for t in (bottom[i] + bottom[j] + top[j], bottom[i] + top[j] + top[i])]
+    return walls + [t for i in range(1, sides - 1) for t in (bottom[0] + bottom[i + 1] + bottom[i], top[0] + top[i] + top[i + 1])]
+
+
+def boxes_at_one_place(n):
+    r = random.Random(n)
+    sizes = [[r.uniform(0.5, 1.5) for _ in range(3)] for _ in range(n)]
+    return stl(t for size in sizes for t in anyhow(r, box([-x / 2 for x in size], size)))
+
+
+def struts_through_a_point(n):
+    r = random.Random(n)
+    return stl(t for _ in range(n) for t in anyhow(r, prism(12, 0.1, -2, 2)))
+
+
+def cones_with_one_tip(n):
+    """Thin cones whose tips are as wide as an atom."""
+    r = random.Random(n)
+    return stl(t for _ in range(n) for t in anyhow(r, prism(8, 0.15, 0, 1, 1e-8)))
+
+
 def crossing_planes(n):
     """Squares through the middle of a cube, each in two triangles."""
     r, triangles = random.Random(n), []
@@ -296,6 +334,9 @@ SIZES = {
     crossing_beams: (10, 30, 100, 300),
     rotated_beams: (10, 30, 100, 300),
     beams_in_three_directions: (5, 10, 30),
+    boxes_at_one_place: (20, 60, 200, 6000),
+    struts_through_a_point: (30, 75, 120, 1600),
+    cones_with_one_tip: (40, 80, 150, 2400),
     crossing_planes: (20, 200, 1000),
     copies_of_a_triangle: (1000, 80000, 1000000),
     faces_at_one_edge: (1000, 20000, 160000),

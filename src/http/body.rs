@@ -9,7 +9,7 @@ use bytes::Bytes;
 use http_body_util::BodyExt as _;
 use tokio::time::Instant;
 
-use super::unpack::is_of_packing;
+use super::unpack::fault_of_packing;
 use crate::wire::{Problem, ProblemCode};
 
 /// Largest rest of an unwanted body that is taken in.
@@ -135,10 +135,7 @@ impl IncomingBody {
     /// Why no more comes. What a connection does not send has the connection's own error; what cannot be unpacked has none but
     /// that of the unpacking.
     fn incomplete(&self, error: &axum::Error) -> Problem {
-        let of_packing = std::error::Error::source(error)
-            .and_then(|source| source.downcast_ref::<io::Error>())
-            .filter(|fault| is_of_packing(fault));
-        let detail = match of_packing {
+        let detail = match fault_of_packing(error) {
             Some(fault) => {
                 let what = match fault.kind() {
                     io::ErrorKind::UnexpectedEof => "its data ends early",

@@ -30,9 +30,13 @@ fn check_host(version: Version, headers: &HeaderMap) -> Result<(), Problem> {
 /// Whether this is a host with or without a port, or nothing, which means that there is none.
 fn is_host(value: &HeaderValue) -> bool {
     let Ok(text) = value.to_str() else { return false };
-    let behind_address = text.split_once(']').map_or("", |(_, rest)| rest);
-    let is_authority = Authority::try_from(text).is_ok() && !text.contains('@');
-    text.is_empty() || is_authority && (behind_address.is_empty() || behind_address.starts_with(':'))
+    let (host, port) = match text.rsplit_once(':') {
+        Some((host, port)) if !port.contains(']') => (host, port),
+        _ => (text, ""),
+    };
+    let is_whole = host.split_once(']').is_none_or(|(_, rest)| rest.is_empty()) && !text.contains('@');
+    let is_authority = is_whole && port.bytes().all(|digit| digit.is_ascii_digit());
+    text.is_empty() || is_authority && Authority::try_from(text).is_ok()
 }
 
 /// A body is sent as it is or in chunks; other transfer codings would be taken for a part of the mesh.
@@ -96,7 +100,9 @@ mod tests {
         for host in ["", "localhost:8080", "[::1]", "[::1]:8080", "127.0.0.1:1"] {
             assert_eq!(of(Version::HTTP_11, &[("host", host)]), Ok(()), "{host}");
         }
-        for host in ["[::1]evil.example", "a b", "user@a", "a/b", "[::1", "a, b"] {
+        for host in
+            ["[::1]evil.example", "[::1]:80evil.example", "a:b", "a b", "user@a", "a/b", "[::1", "a, b"]
+        {
             let refused = Err(ProblemCode::InvalidParameter);
             assert_eq!(of(Version::HTTP_11, &[("host", host)]), refused, "{host}");
         }

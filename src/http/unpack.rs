@@ -1,5 +1,6 @@
 //! Undoes the compression of bodies.
 
+use std::error::Error as _;
 use std::io;
 
 use async_compression::tokio::bufread::GzipDecoder;
@@ -27,9 +28,15 @@ pub(super) async fn unpack(request: Request) -> Request {
     Request::from_parts(head, Body::from_stream(ReaderStream::with_capacity(unpacked, PIECE_BYTES)))
 }
 
-/// Whether an error of an unpacked body is that of its packing, and not of the connection that it came through.
-pub(super) fn is_of_packing(error: &io::Error) -> bool {
-    !error.get_ref().is_some_and(|inner| inner.is::<axum::Error>())
+/// The error of the packing, where a body has failed for that and not for the connection that it came through.
+pub(super) fn fault_of_packing(error: &axum::Error) -> Option<&io::Error> {
+    let mut cause = error.source()?;
+    while let Some(wrapped) = cause.downcast_ref::<axum::Error>() {
+        cause = wrapped.source()?;
+    }
+    // That of a connection holds the error of the body that was to be unpacked.
+    let is_of_packing = |fault: &&io::Error| !fault.get_ref().is_some_and(|inner| inner.is::<axum::Error>());
+    cause.downcast_ref::<io::Error>().filter(is_of_packing)
 }
 
 #[cfg(test)]
@@ -63,8 +70,7 @@ mod tests {
         assert!(text == [&long[..], b"v 1 0 0\n"].concat());
         for wrong in [[&two[..], b"xx"].concat(), two[..two.len() - 3].to_vec(), b"v 1 0 0\n".to_vec()] {
             let error = unpacked(wrong).await.unwrap_err();
-            let source = std::error::Error::source(&error).unwrap().downcast_ref::<io::Error>().unwrap();
-            assert!(is_of_packing(source), "{source:?}");
+            assert!(fault_of_packing(&error).is_some(), "{error:?}");
         }
     }
 
@@ -74,7 +80,6 @@ mod tests {
         let mut request = Request::new(Body::from_stream(broken));
         request.headers_mut().insert(header::CONTENT_ENCODING, HeaderValue::from_static("gzip"));
         let error = unpack(request).await.into_body().collect().await.unwrap_err();
-        let source = std::error::Error::source(&error).unwrap().downcast_ref::<io::Error>().unwrap();
-        assert!(!is_of_packing(source), "{source:?}");
+        assert!(fault_of_packing(&error).is_none(), "{error:?}");
     }
 }

@@ -87,6 +87,22 @@ fn beams(n: usize, is_turned: bool) -> RawSoup {
     all
 }
 
+/// Boxes that all hold the origin, turned anyhow.
+fn boxes_at_one_place(count: usize) -> RawSoup {
+    let mut random = Random::new(7);
+    (0..count).fold(RawSoup::default(), |all, _| {
+        let size: [f64; 3] = std::array::from_fn(|_| 0.5 + random.unit());
+        let mut one = cuboid(size).moved(size.map(|x| -x / 2.0));
+        for (u, v) in [(0, 1), (1, 2), (0, 1)] {
+            let (sin, cos) = (6.28 * random.unit()).sin_cos();
+            for p in &mut one.positions {
+                (p[u], p[v]) = (cos * p[u] - sin * p[v], sin * p[u] + cos * p[v]);
+            }
+        }
+        all.with(&one)
+    })
+}
+
 #[test]
 fn hostile_triangles_end_within_their_bound() {
     for count in [20, 60, cases(60, 1000)] {
@@ -122,6 +138,7 @@ fn hostile_bodies_end_within_their_bound() {
     for is_turned in [false, true] {
         check_soup("beams", &beams(8, is_turned), Encoding::StlBinary);
     }
+    check_soup("boxes at one place", &boxes_at_one_place(12), Encoding::StlBinary);
     let there = beams(4, false);
     check_soup("both directions", &there.clone().with(&there.inside_out()), Encoding::StlBinary);
     let at = |i: usize| [i % 5, i / 5 % 5, i / 25].map(|x| x as f64);
