@@ -35,8 +35,9 @@ pub(super) fn fault_of_packing(error: &axum::Error) -> Option<&io::Error> {
         cause = wrapped.source()?;
     }
     // That of a connection holds the error of the body that was to be unpacked.
-    let is_of_packing = |fault: &&io::Error| !fault.get_ref().is_some_and(|inner| inner.is::<axum::Error>());
-    cause.downcast_ref::<io::Error>().filter(is_of_packing)
+    let fault = cause.downcast_ref::<io::Error>()?;
+    let of_connection = fault.get_ref().and_then(|inner| inner.downcast_ref::<axum::Error>());
+    of_connection.is_none().then_some(fault)
 }
 
 #[cfg(test)]

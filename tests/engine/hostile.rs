@@ -94,7 +94,7 @@ fn boxes_at_one_place(count: usize) -> RawSoup {
         let size: [f64; 3] = std::array::from_fn(|_| 0.5 + random.unit());
         let mut one = cuboid(size).moved(size.map(|x| -x / 2.0));
         for (u, v) in [(0, 1), (1, 2), (0, 1)] {
-            let (sin, cos) = (6.28 * random.unit()).sin_cos();
+            let (sin, cos) = (std::f64::consts::TAU * random.unit()).sin_cos();
             for p in &mut one.positions {
                 (p[u], p[v]) = (cos * p[u] - sin * p[v], sin * p[u] + cos * p[v]);
             }
