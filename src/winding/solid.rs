@@ -6,6 +6,9 @@ use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, DVec3, Sign, triangle_area, upward_crossing};
 use crate::spatial::Bvh;
 
+/// Units of work of asking whether a place is below a triangle.
+const CROSSING: u64 = 4;
+
 /// The solid that triangles stand for: what their closed shells and those that nearly bound a volume wind around.
 #[derive(Debug)]
 pub struct WindingSolid {
@@ -100,6 +103,7 @@ impl WindingSolid {
 
     /// Where a place is that these triangles may be `above`.
     fn surroundings(&self, place: DVec3, above: &[u32], budget: &Budget) -> Result<Containment, Stopped> {
+        budget.spend(CROSSING * above.len() as u64)?;
         let (mut count, mut of_parts) = (0, Vec::new());
         for &t in above {
             if let Some(turn) = upward_crossing(place, self.corners[t as usize]) {

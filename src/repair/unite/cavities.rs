@@ -26,8 +26,8 @@ pub(super) struct TurnedShells {
 }
 
 /// Turns the closed shells that point inward, unless they are cavities. A shell that is nowhere outside of the bodies around it is a
-/// cavity of theirs, also where it reaches their surface from within; one in a larger cavity is a body again. Where all that points
-/// outward would be a cavity if every shell turned, the file is inside out as a whole, and every shell is turned. Shells are those
+/// cavity of theirs, also where it reaches their surface from within; one in a larger cavity is a body again. Where the largest shell is
+/// turned, the file is inside out mostly: what points outward and would be a cavity if every shell turned is turned too. Shells are those
 /// connected by edges, so that bodies that share an edge count as one.
 pub(super) fn turn_inverted(draft: &mut Draft, budget: &Budget) -> Result<TurnedShells, Stopped> {
     let groups = EdgeGroups::build(&draft.triangles, draft.positions.len(), budget)?;
@@ -74,21 +74,19 @@ pub(super) fn turn_inverted(draft: &mut Draft, budget: &Budget) -> Result<Turned
         let (of, members, sizes, bvh) = (&parts.of[..], &members, &sizes[..], &bvh);
         DraftShells { draft, of, members, is_inverted, sizes, bvh, budget }.divide_inverted()
     };
+    let (mut cavities, mut turned) = divide(draft, &is_inverted)?;
     let largest = closed.iter().copied().max_by(|&a, &b| sizes[a].total_cmp(&sizes[b]));
-    if largest.is_some_and(|part| is_inverted[part]) {
+    if largest.is_some_and(|part| turned.contains(&part)) {
         turn(draft, &closed);
         let is_outward: Vec<bool> = is_closed.iter().zip(&is_inverted).map(|(&c, &i)| c && !i).collect();
-        let (cavities, bodies) = divide(draft, &is_outward)?;
-        if bodies.is_empty() {
-            let with_cavities = CavityShells::of_parts(parts.of, &is_closed, &cavities);
-            return Ok(TurnedShells { count: closed.len() as u64, with_cavities });
-        }
+        let (cavities_of_turned, _) = divide(draft, &is_outward)?;
         turn(draft, &closed);
+        turned.extend(&cavities_of_turned);
+        cavities.extend(cavities_of_turned);
     }
-    let (cavities, bodies) = divide(draft, &is_inverted)?;
-    turn(draft, &bodies);
+    turn(draft, &turned);
     let with_cavities = CavityShells::of_parts(parts.of, &is_closed, &cavities);
-    Ok(TurnedShells { count: bodies.len() as u64, with_cavities })
+    Ok(TurnedShells { count: turned.len() as u64, with_cavities })
 }
 
 /// What a shell is.
@@ -130,18 +128,24 @@ impl CavityShells {
         self.of[triangle as usize] as usize
     }
 
-    /// Whether a piece with void on both sides is a mouth, where a cavity reaches the surface of its body: of the triangles that
-    /// cover it as many turn one way as the other, those of bodies and those of cavities. `sources` tell which turn around.
+    /// Whether a piece with void on both sides is a mouth, where cavities reach the surface of a body: of the triangles that cover it
+    /// those of bodies turn one way, and those of cavities, at least as many, the other. `sources` tell which turn around.
     pub(super) fn have_mouth(&self, sources: &[(u32, bool)]) -> bool {
         let count = |kind: ShellKind, is_turned: bool| {
             let is_one = |&&(t, turns): &&(u32, bool)| self.kinds[self.of(t)] == kind && turns == is_turned;
             sources.iter().filter(is_one).count()
         };
         let half = |is_turned| {
-            let bodies = count(ShellKind::Body, is_turned);
-            bodies > 0 && 2 * bodies == sources.len() && bodies == count(ShellKind::Cavity, !is_turned)
+            let (bodies, cavities) =
+                (count(ShellKind::Body, is_turned), count(ShellKind::Cavity, !is_turned));
+            bodies > 0 && cavities >= bodies && bodies + cavities == sources.len()
         };
         half(true) || half(false)
+    }
+
+    /// Whether a piece with void on both sides is where cavities pass into each other: all triangles that cover it are of cavities.
+    pub(super) fn have_passage(&self, sources: &[(u32, bool)]) -> bool {
+        sources.iter().all(|&(t, _)| self.kinds[self.of(t)] == ShellKind::Cavity)
     }
 
     /// Whether the shell of a triangle is a body.
@@ -284,9 +288,31 @@ mod tests {
             let (found, changes) = united(&[&[body][..], &inner].concat());
             assert_eq!((found, changes.count("shells_turned")), (volume, 3), "{inner:?}");
         }
-        // Not as a whole: a body beside it points outward.
-        let (volume, changes) = united(&[body, (DVec3::ONE, 2.0, false), (DVec3::splat(9.0), 1.0, false)]);
-        assert_eq!((volume, changes.count("shells_turned")), (513.0, 1));
+        // A body beside it points outward, as it should; a larger one with a cavity of its own, which is none of those.
+        let small = [body, (DVec3::ONE, 2.0, false), (DVec3::splat(9.0), 1.0, false)];
+        let (volume, changes) = united(&small);
+        assert_eq!((volume, changes.count("shells_turned")), (512.0 - 8.0 + 1.0, 2));
+        let large = [(DVec3::splat(9.0), 10.0, false), (DVec3::splat(10.0), 1.0, true)];
+        let (volume, changes) = united(&[&large, &small[..2]].concat());
+        assert_eq!((volume, changes.count("shells_turned")), (1000.0 - 1.0 + 512.0, 1));
+    }
+
+    #[test]
+    fn cavities_that_reach_the_surface_and_each_other_stay_open() {
+        let body = (DVec3::ZERO, 8.0, false);
+        let cup = (DVec3::new(2.0, 2.0, 4.0), 4.0, true);
+        // A pocket under the cup, one through its floor, one beside it at the surface, and the cup twice.
+        for (second, volume) in [
+            ((DVec3::new(3.0, 3.0, 2.0), 2.0, true), 512.0 - 64.0 - 8.0),
+            ((DVec3::new(3.0, 3.0, 3.0), 2.0, true), 512.0 - 64.0 - 4.0),
+            ((DVec3::new(5.0, 3.0, 6.0), 2.0, true), 512.0 - 64.0 - 4.0),
+            (cup, 512.0 - 64.0),
+        ] {
+            let (found, changes) = united(&[body, cup, second]);
+            let coverage = changes.coverage.unwrap();
+            assert_eq!((found, coverage.bare_beside_mouths.len()), (volume, 0), "{second:?}");
+            assert!(coverage.mouths > 0, "{second:?}");
+        }
     }
 
     #[test]

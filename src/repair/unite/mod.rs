@@ -36,7 +36,7 @@ const PAIRS_OF_LARGE_MAX: usize = 1 << 21;
 
 /// Most points where triangles cross each other inside of others, in drafts of up to about 100,000 triangles, and in larger ones
 /// for each triangle and in all: each takes about 250 bytes.
-const CROSSINGS_OF_SMALL_MAX: usize = 3 << 20;
+const CROSSINGS_OF_SMALL_MAX: usize = 5 << 19;
 const CROSSINGS_PER_TRIANGLE_OF_LARGE: usize = 32;
 const CROSSINGS_OF_LARGE_MAX: usize = 1 << 23;
 
@@ -58,7 +58,7 @@ pub struct Coverage {
     /// Pieces that are mouths: where a cavity reaches the surface of its body, triangles of both lie on each other, turn opposite ways
     /// and bound nothing.
     pub mouths: u64,
-    /// Those of `bare` of which a piece is gone that is no mouth, ascending.
+    /// Those of `bare` of which a piece is gone that is no mouth and not where cavities pass into each other, ascending.
     pub bare_beside_mouths: Vec<u32>,
 }
 
@@ -84,7 +84,7 @@ impl Coverage {
                 let is_mouth = !front && !back && shells.have_mouth(arrangement.sources(f));
                 if is_mouth {
                     mouths.push(f);
-                } else if !front && !back {
+                } else if !front && !back && !shells.have_passage(arrangement.sources(f)) {
                     coverage.bare_beside_mouths.extend(sources());
                 }
                 let area = triangle_area(corners.map(|p| arrangement.position(p)));
