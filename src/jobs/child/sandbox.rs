@@ -71,17 +71,15 @@ impl Sandbox {
 
 /// Gives up all that root may do beyond other users, for good. A process of another user has none of it to give up.
 fn drop_capabilities() -> io::Result<()> {
+    let as_far_as_allowed = |result| match result {
+        // A process of another user, a container that forbids the call, or an older kernel.
+        Err(Errno::PERM | Errno::NOSYS | Errno::INVAL) => Ok(()),
+        result => result,
+    };
     for capability in CapabilitySet::all().iter() {
-        match rustix::thread::remove_capability_from_bounding_set(capability) {
-            // Of another user; or an older kernel does not know it.
-            Ok(()) | Err(Errno::PERM | Errno::INVAL) => {}
-            Err(error) => return Err(error.into()),
-        }
+        as_far_as_allowed(rustix::thread::remove_capability_from_bounding_set(capability))?;
     }
     let none = CapabilitySet::empty();
-    rustix::thread::set_capabilities(
-        None,
-        CapabilitySets { effective: none, permitted: none, inheritable: none },
-    )?;
-    Ok(())
+    let sets = CapabilitySets { effective: none, permitted: none, inheritable: none };
+    Ok(as_far_as_allowed(rustix::thread::set_capabilities(None, sets))?)
 }

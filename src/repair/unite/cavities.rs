@@ -288,7 +288,7 @@ mod tests {
             let (found, changes) = united(&[&[body][..], &inner].concat());
             assert_eq!((found, changes.count("shells_turned")), (volume, 3), "{inner:?}");
         }
-        // A body beside it points outward, as it should; a larger one with a cavity of its own, which is none of those.
+        // A body beside it that points outward stays; beside a larger one that does, only the body is turned.
         let small = [body, (DVec3::ONE, 2.0, false), (DVec3::splat(9.0), 1.0, false)];
         let (volume, changes) = united(&small);
         assert_eq!((volume, changes.count("shells_turned")), (512.0 - 8.0 + 1.0, 2));
