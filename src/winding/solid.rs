@@ -192,6 +192,26 @@ mod tests {
     }
 
     #[test]
+    fn triangles_above_a_place_are_counted_on_both_of_its_sides() {
+        let work = |cubes: u32| {
+            let mut mesh = cube(0.0, 10.0);
+            for i in 1..cubes {
+                let base = mesh.0.len() as u32;
+                let (positions, triangles) = cube(0.0, 10.0);
+                mesh.0.extend(positions.iter().map(|&p| p + DVec3::Z * f64::from(11 * i)));
+                mesh.1.extend(triangles.iter().map(|t| t.map(|v| v + base)));
+            }
+            let solid = WindingSolid::of(&mesh.0, &mesh.1, OpenShells::Auto, &Budget::unlimited()).unwrap();
+            let (budget, bottom) = (Budget::unlimited(), mesh.1[0].map(|v| mesh.0[v as usize]));
+            let place = bottom.iter().sum::<DVec3>() / 3.0;
+            solid.hides(place, bottom, &mut LookedFrom::default(), &budget).unwrap();
+            budget.work_used()
+        };
+        // At least the bottom and the top of each further cube, by a triangle of each, below one side at least.
+        assert!(work(200) - work(100) > 2 * 100 * CROSSING, "{} {}", work(100), work(200));
+    }
+
+    #[test]
     fn what_goes_into_another_body_is_hidden_there_only() {
         let crossing = both(cube(0.0, 10.0), cube(5.0, 10.0));
         let solid =

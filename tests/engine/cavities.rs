@@ -181,3 +181,58 @@ fn two_cavities_with_a_wall_without_thickness_between_them_stay() {
         assert!(shells == 2 && (found - expected).abs() < 1e-6, "{shells} {found}");
     }
 }
+
+/// Boxes of quads as OFF: each its lowest corner, its size, and whether it points inward.
+fn boxes(of: &[([i32; 3], [i32; 3], bool)]) -> Vec<u8> {
+    const QUADS: [[usize; 4]; 6] =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let (mut points, mut faces) = (String::new(), String::new());
+    for (number, &(low, size, is_inverted)) in of.iter().enumerate() {
+        for i in 0..8 {
+            let [x, y, z] = [0, 1, 2].map(|k| low[k] + size[k] * (i >> k & 1));
+            points += &format!("{x} {y} {z}\n");
+        }
+        for quad in QUADS {
+            let [a, b, c, d] = quad.map(|v| v + 8 * number);
+            let quad = if is_inverted { [d, c, b, a] } else { [a, b, c, d] };
+            faces += &format!("4 {} {} {} {}\n", quad[0], quad[1], quad[2], quad[3]);
+        }
+    }
+    format!("OFF\n{} {} 0\n{points}{faces}", 8 * of.len(), 6 * of.len()).into_bytes()
+}
+
+#[test]
+fn stepped_holes_and_drills_that_cross_stay_open_whichever_way_the_file_is_drawn() {
+    let body = ([0, 0, 0], [10, 10, 8]);
+    for (first, second, expected) in [
+        // A pocket under a cup; two drills that cross, the one from above and the other from the side; two cups side by side.
+        (([2, 2, 5], [6, 6, 3]), ([4, 4, 2], [2, 2, 3]), 800.0 - 108.0 - 12.0),
+        (([4, 4, 2], [2, 2, 6]), ([0, 4, 3], [7, 2, 2]), 800.0 - 24.0 - 28.0 + 8.0),
+        (([1, 3, 4], [4, 4, 4]), ([5, 3, 4], [4, 4, 4]), 800.0 - 128.0),
+    ] {
+        for is_inverted in [false, true] {
+            let solid = |(low, size)| (low, size, is_inverted);
+            let hollow = |(low, size)| (low, size, !is_inverted);
+            let file = boxes(&[solid(body), hollow(first), hollow(second)]);
+            let answer = run(Operation::Repair, file, &Options::default(), &Budget::unlimited()).unwrap();
+            let (shells, found) = figures(&answer);
+            assert!(shells == 1 && (found - expected).abs() < 1e-6, "{shells} {found}, not {expected}");
+        }
+    }
+}
+
+#[test]
+fn a_counterbore_of_two_cylinders_stays_open() {
+    let block = cuboid([30.0, 30.0, 20.0]).moved([-15.0, -15.0, 0.0]);
+    let wide = cylinder(24, 8.0, [12.0, 20.0]);
+    let narrow = cylinder(16, 3.0, [0.0, 12.0]);
+    let expected = 18_000.0 - volume(24, 8.0, 8.0) - volume(16, 3.0, 12.0);
+    let drawn = block.with(&wide.inside_out()).with(&narrow.inside_out());
+    for file in [drawn.clone(), drawn.inside_out()] {
+        let (shells, found) = figures(&repaired(&file));
+        assert!(
+            shells == 1 && (found - expected).abs() < 1e-3 * expected,
+            "{shells} {found}, not {expected}"
+        );
+    }
+}

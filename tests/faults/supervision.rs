@@ -80,7 +80,8 @@ pub(crate) fn waiting_of(server: &Server, but: u32) -> u32 {
 pub(crate) fn a_job_whose_folder_is_removed_runs_again() {
     let server = Server::of(&std::env::current_exe().unwrap(), &["--slots", "1"]);
     let job = server.job("repair", crate::meshes::long_job(60));
-    child_of(&server);
+    // No folder is made while they are removed: the next process waits already.
+    waiting_of(&server, child_of(&server));
     std::fs::remove_dir_all(server.data_dir().join("work")).unwrap();
     let ended = server.ended(&job);
     assert_eq!((&ended["state"], &ended["attempts"]), (&json!("succeeded"), &json!(1)), "{ended}");

@@ -91,7 +91,11 @@ mod tests {
     fn words_are_heard_however_the_pipe_cuts_them() {
         let problem = Problem::new(ProblemCode::MeshEmpty, "empty");
         let said = [
-            line(&ChildMessage::Confined(Protections { landlock_abi: Some(7), is_filtered: true })),
+            line(&ChildMessage::Confined(Protections {
+                landlock_abi: Some(7),
+                is_filtered: true,
+                keeps_capabilities: false,
+            })),
             line(&ChildMessage::Taken),
             line(&ChildMessage::Enter(Stage::Read)),
             line(&ChildMessage::Leave(Stage::Read)),

@@ -29,12 +29,14 @@ pub(super) struct Protections {
     pub(super) landlock_abi: Option<u32>,
     /// It may make the system calls of a computation only.
     pub(super) is_filtered: bool,
+    /// It has capabilities of root, which a container does not let it give up.
+    pub(super) keeps_capabilities: bool,
 }
 
 impl Protections {
     /// Nothing is missing.
     pub(super) fn are_complete(self) -> bool {
-        self.landlock_abi.is_some() && self.is_filtered
+        self.landlock_abi.is_some() && self.is_filtered && !self.keeps_capabilities
     }
 }
 
@@ -44,7 +46,8 @@ impl fmt::Display for Protections {
             Some(abi) => write!(f, "landlock (ABI {abi})")?,
             None => f.write_str("no landlock")?,
         }
-        f.write_str(if self.is_filtered { ", seccomp filter" } else { ", no seccomp filter" })
+        f.write_str(if self.is_filtered { ", seccomp filter" } else { ", no seccomp filter" })?;
+        f.write_str(if self.keeps_capabilities { ", capabilities of root" } else { "" })
     }
 }
 
@@ -55,10 +58,10 @@ impl Sandbox {
             return Ok(Protections::default());
         }
         rustix::thread::set_no_new_privs(true)?;
-        drop_capabilities()?;
+        let keeps_capabilities = !drop_capabilities()?.is_empty();
         let landlock_abi = files::confine_to(rooms)?;
         let is_filtered = calls::confine()?;
-        let protections = Protections { landlock_abi, is_filtered };
+        let protections = Protections { landlock_abi, is_filtered, keeps_capabilities };
         if self == Self::Require && !protections.are_complete() {
             return Err(io::Error::new(
                 io::ErrorKind::Unsupported,
@@ -69,8 +72,9 @@ impl Sandbox {
     }
 }
 
-/// Gives up all that root may do beyond other users, for good. A process of another user has none of it to give up.
-fn drop_capabilities() -> io::Result<()> {
+/// Gives up all that root may do beyond other users, for good, and gives what is left of it. A process of another user has none of it
+/// to give up.
+fn drop_capabilities() -> io::Result<CapabilitySet> {
     let as_far_as_allowed = |result| match result {
         // A process of another user, a container that forbids the call, or an older kernel.
         Err(Errno::PERM | Errno::NOSYS | Errno::INVAL) => Ok(()),
@@ -81,5 +85,6 @@ fn drop_capabilities() -> io::Result<()> {
     }
     let none = CapabilitySet::empty();
     let sets = CapabilitySets { effective: none, permitted: none, inheritable: none };
-    Ok(as_far_as_allowed(rustix::thread::set_capabilities(None, sets))?)
+    as_far_as_allowed(rustix::thread::set_capabilities(None, sets))?;
+    Ok(rustix::thread::capabilities(None)?.permitted)
 }

@@ -1,9 +1,13 @@
 //! The last rung: a surface rebuilt around what no local edit could make a solid.
 
+mod effort;
 mod fewer;
 mod filled;
 mod parts;
 
+pub use self::effort::Effort;
+
+use self::effort::coarser_than;
 use self::fewer::WrapReduction;
 use super::fidelity::{FidelityMeasurement, Original, defined_volume};
 use super::input::Input;
@@ -54,39 +58,6 @@ const CAUSES: [DefectCode; 9] = [
     DefectCode::Touch,
     DefectCode::MisnestedShell,
 ];
-
-/// How fine and so how long to try.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Effort {
-    /// The coarsest lattice that usually shows what is to be seen.
-    Low,
-    /// That, and a finer one where too much is lost.
-    #[default]
-    Normal,
-    /// Ever finer ones.
-    High,
-}
-
-impl Effort {
-    /// The lattices to try, one after the other: cells along the longest side, and most cubes for the area.
-    fn lattices(self) -> &'static [(u32, f64)] {
-        const ALL: [(u32, f64); 3] = [(256, 3e4), (512, 1.5e5), (1024, 6e5)];
-        match self {
-            Self::Low => &ALL[..1],
-            Self::Normal => &ALL[..2],
-            Self::High => &ALL,
-        }
-    }
-}
-
-/// Coarser lattices than all that an effort begins with, for what takes too much work on those.
-const COARSER: [(u32, f64); 3] = [(128, 7.5e3), (64, 1.9e3), (32, 500.0)];
-
-/// The coarser lattices below one of so many cells.
-fn coarser_than(cells: u32) -> &'static [(u32, f64)] {
-    let first = COARSER.iter().position(|&(coarser, _)| coarser < cells).unwrap_or(COARSER.len());
-    &COARSER[first..]
-}
 
 /// A certified mesh, how it came to be, and how far it is from the input.
 pub(super) struct Rebuilt {

@@ -1,7 +1,7 @@
 //! What the triangles of a draft enclose becomes solid, whichever way they turn.
 
 use super::bare::become_solid_and_copy_bare;
-use super::{become_solid, left_alone, options};
+use super::{arrangement_options, become_solid, left_alone};
 use crate::arrangement::{Arrangement, ArrangementError, SolidBoundary, arrange_enclosed};
 use crate::budget::{Budget, Stopped};
 use crate::geom::triangle_area;
@@ -35,7 +35,8 @@ fn enclose_by(
     become_solid: impl Fn(&mut Draft, &Arrangement, SolidBoundary, &Budget) -> Result<Changes, ArrangementError>,
     budget: &Budget,
 ) -> Result<Changes, Stopped> {
-    let arranged = arrange_enclosed(&draft.positions, &draft.triangles, &options(draft, 1), budget);
+    let options = arrangement_options(draft, 1);
+    let arranged = arrange_enclosed(&draft.positions, &draft.triangles, &options, budget);
     let enclosed = arranged.and_then(|arrangement| {
         let mut boundary = arrangement.boundary(|winding| winding[0] > 0);
         turn_inward(&mut boundary, &arrangement, budget)?;

@@ -202,12 +202,12 @@ fn arranged_by(
     operand_of: impl Fn(u32) -> u8 + Sync,
     budget: &Budget,
 ) -> Result<Arrangement, ArrangementError> {
-    let options = options(draft, operands);
+    let options = arrangement_options(draft, operands);
     arrange(&draft.positions, &draft.triangles, operand_of, &options, budget)
 }
 
 /// What the arrangement of a draft may cost.
-fn options(draft: &Draft, operands: u8) -> ArrangementOptions {
+fn arrangement_options(draft: &Draft, operands: u8) -> ArrangementOptions {
     let triangles = draft.triangles.len();
     let crossings_max =
         (triangles * CROSSINGS_PER_TRIANGLE_OF_LARGE).clamp(CROSSINGS_OF_SMALL_MAX, CROSSINGS_OF_LARGE_MAX);
