@@ -17,7 +17,7 @@ use super::store::{
     BlobRef, Created, Ending, IdempotencyKey, JobId, JobRow, Lane, NewJob, StoreError, Tenant, Webhook,
 };
 use super::trace::TraceParent;
-use super::upload::Uploaded;
+use super::upload::{StoredUpload, Uploaded};
 use super::view;
 use crate::wire::{InputRef, Job, JobState, Labels, Operation, Options, Problem, ProblemCode};
 
@@ -192,7 +192,8 @@ impl Service {
             Some(Created::Known(row)) => return Ok(row),
             None => {}
         }
-        let mut upload = submission.upload;
+        let mut upload = stored_if_any(submission.upload).await?;
+        let own_material = stored_if_any(submission.material).await?;
         let mut created = self.create(new.clone()).await;
         if let (Err(StoreError::NotFound), Some(taken)) = (&created, new.taken) {
             // Another request that names the upload was quicker: it is the same as to name its job.
@@ -204,20 +205,20 @@ impl Service {
                 .create(NewJob { input: source.input, source: Some(source.id), taken: None, ..new })
                 .await;
         }
-        let files = [upload, submission.material].into_iter().flatten();
+        let files = [upload, own_material].into_iter().flatten();
         let row = match created {
             Ok(Created::Known(row)) => return Ok(row),
             Ok(Created::New(row)) => row,
             Err(error) => {
                 if matches!(error, StoreError::Unavailable(_)) {
                     // The row may be there all the same, and name them; otherwise they are found as orphans.
-                    files.for_each(Uploaded::maybe_named);
+                    files.for_each(StoredUpload::maybe_named);
                 }
                 return Err(self.not_admitted(&error));
             }
         };
         // From here on the row owns the files.
-        files.for_each(Uploaded::named);
+        files.for_each(StoredUpload::named);
         if let Some(left) = row.time_left {
             tokio::spawn(end_overdue(Arc::clone(self), row.id, left));
         }
@@ -270,16 +271,12 @@ impl Service {
         loop {
             let equal = self.store.find_equal(new).await.ok()??;
             let result = equal.ending.iter().flat_map(Ending::blobs);
-            let mut unsound = None;
-            for blob in result.chain([&equal.input]).chain(&equal.material) {
-                match self.open_sound(blob).await {
-                    Ok(_) => {}
-                    Err(Unsound::Disk(_)) => return None,
-                    Err(error) => unsound = Some(error),
-                }
+            let files = result.chain([&equal.input]).chain(&equal.material).cloned();
+            match self.check_sound(files.collect()).await {
+                Ok(()) => return Some(equal),
+                Err(Unsound::Disk(_)) => return None,
+                Err(unsound) => self.give_up_files(&equal, &unsound).await,
             }
-            let Some(unsound) = unsound else { return Some(equal) };
-            self.give_up_files(&equal, &unsound).await;
             // It would be found again.
             if self.store.get(equal.id).await.is_ok_and(|row| row.state != JobState::Expired) {
                 return None;
@@ -304,6 +301,13 @@ impl Service {
             self.note_load();
         }
         Some(created)
+    }
+}
+
+async fn stored_if_any(upload: Option<Uploaded>) -> Result<Option<StoredUpload>, Problem> {
+    match upload {
+        Some(upload) => upload.stored().await.map(Some),
+        None => Ok(None),
     }
 }
 

@@ -140,8 +140,13 @@ impl Service {
     /// Opens a file of which every byte is what it was.
     pub(super) async fn open_sound(&self, blob: &BlobRef) -> Result<File, Unsound> {
         let (spool, blob) = (Arc::clone(&self.spool), blob.clone());
-        let opening = tokio::task::spawn_blocking(move || spool.open_sound(&blob));
-        opening.await.unwrap_or_else(|error| Err(Unsound::Disk(std::io::Error::other(error))))
+        looking(move || spool.open_sound(&blob)).await
+    }
+
+    /// Whether every byte of these files is what it was; of those that are not, why the first one is not.
+    pub(super) async fn check_sound(&self, blobs: Vec<BlobRef>) -> Result<(), Unsound> {
+        let spool = Arc::clone(&self.spool);
+        looking(move || blobs.iter().try_for_each(|blob| spool.open_sound(blob).map(drop))).await
     }
 
     /// A job with a file that is lost or damaged has expired, if it has not gone in the meantime.
@@ -156,19 +161,25 @@ impl Service {
 
     /// Whether the upload of a job is as it was sent, and what came with it.
     pub(super) async fn check_upload(&self, row: &JobRow) -> Result<(), Problem> {
-        for blob in [&row.input].into_iter().chain(&row.material) {
-            match self.open_sound(blob).await {
-                Ok(_) => {}
-                Err(Unsound::Disk(error)) => return Err(disk_problem(&error)),
-                Err(unsound) => {
-                    tracing::error!(job = %row.id, "{unsound}: the job cannot run");
-                    meters::unsound(&unsound);
-                    return Err(upload_gone());
-                }
+        let sent = [&row.input].into_iter().chain(&row.material).cloned();
+        match self.check_sound(sent.collect()).await {
+            Ok(()) => Ok(()),
+            Err(Unsound::Disk(error)) => Err(disk_problem(&error)),
+            Err(unsound) => {
+                tracing::error!(job = %row.id, "{unsound}: the job cannot run");
+                meters::unsound(&unsound);
+                Err(upload_gone())
             }
         }
-        Ok(())
     }
+}
+
+/// Looks at files on a thread that may wait for the disk.
+async fn looking<T: Send + 'static>(
+    look: impl FnOnce() -> Result<T, Unsound> + Send + 'static,
+) -> Result<T, Unsound> {
+    let looked = tokio::task::spawn_blocking(look).await;
+    looked.unwrap_or_else(|error| Err(Unsound::Disk(std::io::Error::other(error))))
 }
 
 /// How the job ended, if it has and its files are kept.

@@ -19,7 +19,7 @@ use super::problems::{disk_problem, store_problem, upload_gone};
 use super::service::Service;
 use super::soundness::Unsound;
 use super::store::{BlobRef, JobId, NewUpload, StoreError, Tenant, UploadId, UploadRow};
-use super::upload::{ClaimedUpload, Upload, UploadPurpose, Uploaded};
+use super::upload::{ClaimedUpload, StoredUpload, Upload, UploadPurpose, Uploaded};
 use crate::wire::{Problem, ProblemCode};
 
 /// Most pieces of one upload.
@@ -287,11 +287,11 @@ impl Service {
 
 /// A piece that a row may name already, also when the store did not say so or this ends before it does: its file stays, and
 /// goes as an orphan where no row names it.
-struct MaybeNamed(Option<Uploaded>);
+struct MaybeNamed(Option<StoredUpload>);
 
 impl Drop for MaybeNamed {
     fn drop(&mut self) {
-        self.0.take().into_iter().for_each(Uploaded::maybe_named);
+        self.0.take().into_iter().for_each(StoredUpload::maybe_named);
     }
 }
 
@@ -371,7 +371,7 @@ impl UploadPieces {
     /// As [`write`](Self::write).
     pub async fn keep(&mut self) -> Result<(), Problem> {
         let Some((piece, _)) = self.open.take() else { return Ok(()) };
-        let piece = piece.finish().await?;
+        let piece = piece.finish().await?.stored().await?;
         let Some(blob) = piece.blob().cloned() else { return Ok(()) };
         let (bytes, keep_for) = (blob.bytes, self.service.settings.upload_ttl);
         let (service, id, at) = (Arc::clone(&self.service), self.id, self.received);

@@ -109,8 +109,13 @@ impl Spool {
         folder: &'static str,
     ) -> io::Result<(Unnamed, Box<dyn BlobWriter>)> {
         let unnamed = self.new_name(folder);
-        let writer = self.blobs.create(&unnamed.key)?;
+        let writer = self.create(&unnamed)?;
         Ok((unnamed, writer))
+    }
+
+    /// Begins the file of this name. Blocks.
+    pub(super) fn create(&self, unnamed: &Unnamed) -> io::Result<Box<dyn BlobWriter>> {
+        self.blobs.create(&unnamed.key)
     }
 
     /// Writes a file of a run into reserved room. Blocks.

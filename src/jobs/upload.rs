@@ -157,30 +157,40 @@ impl Upload {
         self.files.push(self.bytes - self.files.iter().sum::<u64>());
     }
 
-    /// Ends the upload; it is on the disk then.
+    /// Ends the upload. What fits into one block is not on the disk until it is [stored](Uploaded::stored): an answer that is
+    /// known needs no file.
     ///
     /// # Errors
     /// `queue-full`, `storage-full`, `internal` when the disk fails.
     pub async fn finish(mut self) -> Result<Uploaded, Problem> {
         let (sink, _) = self.next_sink().await?;
         let block = std::mem::take(&mut self.block);
-        let (spool, folder) = (Arc::clone(&self.service.spool), self.folder);
-        let written = on_disk(move || {
-            let mut sink = sink.open(&spool, folder)?;
-            sink.write(&block)?;
-            let OpenSink { unnamed, writer, digest } = *sink;
-            writer.commit()?;
-            Ok((unnamed, digest.finalize().into()))
-        });
-        let (unnamed, sha256) = written.await?;
         let files = if self.files.len() > 1 { self.files } else { Vec::new() };
-        let blob = BlobRef { key: unnamed.key.clone(), bytes: self.bytes, sha256, files };
-        Ok(Uploaded {
-            written: Written::upload(unnamed, blob, self.space),
-            taken: None,
-            _place: self.place,
-            _incoming: Some(self.incoming),
-        })
+        let blob_of = |unnamed: &Unnamed, sha256| BlobRef {
+            key: unnamed.key.clone(),
+            bytes: self.bytes,
+            sha256,
+            files,
+        };
+        let content = if let Sink::Fresh = sink {
+            let unnamed = self.service.spool.new_name(self.folder);
+            let blob = blob_of(&unnamed, Sha256::digest(&block).into());
+            let spool = Arc::clone(&self.service.spool);
+            UploadContent::InMemory(Box::new(SmallUpload { spool, unnamed, blob, block, space: self.space }))
+        } else {
+            let (spool, folder) = (Arc::clone(&self.service.spool), self.folder);
+            let written = on_disk(move || {
+                let mut sink = sink.open(&spool, folder)?;
+                sink.write(&block)?;
+                let OpenSink { unnamed, writer, digest } = *sink;
+                writer.commit()?;
+                Ok((unnamed, digest.finalize().into()))
+            });
+            let (unnamed, sha256) = written.await?;
+            let blob = blob_of(&unnamed, sha256);
+            UploadContent::Stored(Written::upload(unnamed, blob, self.space))
+        };
+        Ok(Uploaded { content, taken: None, place: self.place, incoming: Some(self.incoming) })
     }
 
     /// Where the block is to be written now, for which there is room, and an empty block.
@@ -207,10 +217,46 @@ impl Upload {
 /// A complete upload, to be handed to [`Jobs::submit`](super::Jobs::submit). Dropped instead, it leaves nothing behind.
 #[derive(Debug)]
 pub struct Uploaded {
-    written: Written,
+    content: UploadContent,
     /// The upload that it was made of, which goes when it is a job's.
     taken: Option<ClaimedUpload>,
     /// Given up when this is dropped, as are its bytes among those that come in.
+    place: Option<QueuePlace>,
+    incoming: Option<IncomingBytes>,
+}
+
+/// Where the bytes of a complete upload are.
+#[derive(Debug)]
+enum UploadContent {
+    InMemory(Box<SmallUpload>),
+    Stored(Written),
+}
+
+/// An upload of one block, and what its file will be.
+#[derive(Debug)]
+struct SmallUpload {
+    spool: Arc<Spool>,
+    unnamed: Unnamed,
+    blob: BlobRef,
+    block: Vec<u8>,
+    space: ReservedSpace,
+}
+
+impl SmallUpload {
+    /// Writes the file. Blocks.
+    fn write(self) -> io::Result<Written> {
+        let mut writer = self.spool.create(&self.unnamed)?;
+        writer.write_all(&self.block)?;
+        writer.commit()?;
+        Ok(Written::upload(self.unnamed, self.blob, self.space))
+    }
+}
+
+/// A complete upload that outlasts a loss of power. Dropped before a row names it, it leaves nothing behind.
+#[derive(Debug)]
+pub(super) struct StoredUpload {
+    written: Written,
+    taken: Option<ClaimedUpload>,
     _place: Option<QueuePlace>,
     _incoming: Option<IncomingBytes>,
 }
@@ -235,7 +281,7 @@ impl ClaimedUpload {
 impl Uploaded {
     /// A file that came into the bucket without this service.
     pub(super) fn of_bucket(written: Written) -> Self {
-        Self { written, taken: None, _place: None, _incoming: None }
+        Self { content: UploadContent::Stored(written), taken: None, place: None, incoming: None }
     }
 
     /// The same, made of the pieces of an upload.
@@ -248,6 +294,34 @@ impl Uploaded {
         self.taken.as_ref().map(|taken| taken.id)
     }
 
+    /// The same on the disk, where a row may name it.
+    ///
+    /// # Errors
+    /// `storage-full`, `internal` when the disk fails.
+    pub(super) async fn stored(self) -> Result<StoredUpload, Problem> {
+        let Self { content, taken, place, incoming } = self;
+        let written = match content {
+            UploadContent::InMemory(small) => on_disk(move || small.write()).await?,
+            UploadContent::Stored(written) => written,
+        };
+        Ok(StoredUpload { written, taken, _place: place, _incoming: incoming })
+    }
+
+    /// A row was made that has taken the upload and names another file with the same bytes.
+    pub(super) fn not_needed(self) {
+        self.taken.into_iter().for_each(ClaimedUpload::remove);
+    }
+
+    /// Its file, or what that will be.
+    pub(super) fn blob(&self) -> Option<&BlobRef> {
+        match &self.content {
+            UploadContent::InMemory(small) => Some(&small.blob),
+            UploadContent::Stored(written) => written.blob(),
+        }
+    }
+}
+
+impl StoredUpload {
     /// A row names the file now.
     pub(super) fn named(self) {
         self.written.named();
@@ -259,11 +333,7 @@ impl Uploaded {
         self.written.named();
     }
 
-    /// A row was made that has taken the upload and names another file with the same bytes.
-    pub(super) fn not_needed(self) {
-        self.taken.into_iter().for_each(ClaimedUpload::remove);
-    }
-
+    /// Its file.
     pub(super) fn blob(&self) -> Option<&BlobRef> {
         self.written.blob()
     }

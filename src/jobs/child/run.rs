@@ -5,6 +5,8 @@ use std::fs::File;
 use std::io::{self, Read as _, Write as _};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 use rustix::process::{Signal, getppid, set_parent_process_death_signal};
 
@@ -26,6 +28,9 @@ pub const RUN_JOB: &str = "run-job";
 const WAITING: &CStr = c"meshmend-waits";
 /// The same while it runs a job.
 const WORKING: &CStr = c"meshmend-job";
+
+/// Time between two words about the work within a stage: each of them wakes the server.
+const WORK_TOLD_EVERY: Duration = Duration::from_millis(10);
 
 /// The function that runs a job's bytes.
 type EngineFunction =
@@ -83,9 +88,17 @@ fn obey(task: &Task, files: &Files, engine: &EngineFunction) -> io::Result<()> {
 fn run(task: &Task, files: &Files, engine: &EngineFunction) -> Result<RunProduct<FileMade>, Problem> {
     let clock = StageClock::start(task.operation);
     let stamp = clock.observer();
+    let work_told = Mutex::new(Instant::now());
     let budget = Budget::new(StopFlag::default(), task.engine_work_max, task.engine_bytes_max).observed_by(
         Box::new(move |event| {
             stamp(event);
+            if let ProgressEvent::Work(_) = event {
+                let mut told = work_told.lock().unwrap_or_else(PoisonError::into_inner);
+                if told.elapsed() < WORK_TOLD_EVERY {
+                    return;
+                }
+                *told = Instant::now();
+            }
             // A server that does not listen ends this process anyway.
             let _ = say(&match event {
                 ProgressEvent::Enter(stage) => ChildMessage::Enter(stage.into()),

@@ -8,7 +8,8 @@ use uuid::Uuid;
 use super::rows::{COLUMNS, get, id as id_of, job, number, state, time, to_json, value};
 use super::session::Session;
 use crate::jobs::store::{
-    IdempotencyKey, JobCounts, JobId, JobRow, ListQuery, NewJob, StateChange, StoreError,
+    EQUAL_JOBS_LOOKED_AT, IdempotencyKey, JobCounts, JobId, JobRow, ListQuery, NewJob, StateChange,
+    StoreError,
 };
 use crate::wire::ENGINE_VERSION;
 
@@ -29,12 +30,13 @@ pub(super) async fn find_keyed(
 pub(super) async fn find_equal(session: &Session, new: NewJob) -> Result<Option<JobRow>, StoreError> {
     let sql = format!(
         "SELECT {COLUMNS} FROM jobs
-         WHERE state = 'succeeded' AND input_sha256 = $1 AND owner IS NOT DISTINCT FROM $2 AND operation = $3
+         WHERE state = 'succeeded' AND input_sha256 = $1 AND coalesce(owner, '') = $2 AND operation = $3
              AND engine = $4 AND expires_at > (SELECT now_ms())
-         ORDER BY id DESC"
+         ORDER BY id DESC LIMIT {EQUAL_JOBS_LOOKED_AT}"
     );
     let (digest, operation) = (&new.input.sha256[..], new.operation.word());
-    let rows = session.rows(&sql, &[&digest, &new.owner, &operation, &ENGINE_VERSION]).await?;
+    let owner = new.owner.as_deref().unwrap_or_default();
+    let rows = session.rows(&sql, &[&digest, &owner, &operation, &ENGINE_VERSION]).await?;
     // What cannot be read is not equal.
     Ok(rows.iter().find_map(|row| job(row).ok().filter(|row| row.does_the_same_as(&new))))
 }

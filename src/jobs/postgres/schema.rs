@@ -18,6 +18,13 @@ struct SchemaMigration {
 const STEPS: &[SchemaMigration] = &[
     SchemaMigration { sql: include_str!("schema.sql"), oldest: 1 },
     SchemaMigration { sql: include_str!("uploads.sql"), oldest: 1 },
+    // Jobs that did the same come in the order in which they are looked at, the latest first.
+    SchemaMigration {
+        sql: "DROP INDEX jobs_by_input;
+            CREATE INDEX jobs_by_input ON jobs (input_sha256, operation, coalesce(owner, ''), id)
+                WHERE state = 'succeeded';",
+        oldest: 1,
+    },
 ];
 
 /// The SQL of each step and the oldest version whose programs work after it.

@@ -7,7 +7,8 @@ use rusqlite::{Connection, OptionalExtension as _, params, params_from_iter};
 
 use super::rows::{COLUMNS, get, job, parsed, state, time, time_left, word};
 use crate::jobs::store::{
-    IdempotencyKey, JobCounts, JobId, JobRow, ListQuery, NewJob, StateChange, StoreError,
+    EQUAL_JOBS_LOOKED_AT, IdempotencyKey, JobCounts, JobId, JobRow, ListQuery, NewJob, StateChange,
+    StoreError,
 };
 use crate::wire::{ENGINE_VERSION, JobState};
 
@@ -35,18 +36,22 @@ pub(super) fn find_equal(
     new: &NewJob,
     now: i64,
 ) -> Result<Option<JobRow>, StoreError> {
-    // Left to itself, SQLite walks through all jobs of the owner, which spares it the sorting of one or two.
-    let mut statement = connection.prepare_cached(&format!(
-        "SELECT {COLUMNS} FROM jobs INDEXED BY jobs_by_input
-         WHERE state = 'succeeded' AND input_sha256 = ?1 AND owner IS ?2 AND operation = ?3 AND engine = ?4
-             AND expires_at > ?5
-         ORDER BY id DESC"
-    ))?;
+    let mut statement = connection.prepare_cached(&equal_jobs_sql())?;
     let operation = new.operation.word();
     let given = params![new.input.sha256, new.owner, operation, ENGINE_VERSION, now];
     let mut rows = statement.query_map(given, |row| job(row, now))?;
     // What cannot be read is not equal.
     Ok(rows.find_map(|row| row.ok().filter(|row| row.does_the_same_as(new))))
+}
+
+/// Jobs that may have done the same, the latest first. Left to itself, SQLite may walk through all jobs of the owner.
+fn equal_jobs_sql() -> String {
+    format!(
+        "SELECT {COLUMNS} FROM jobs INDEXED BY jobs_by_input
+         WHERE state = 'succeeded' AND input_sha256 = ?1 AND owner IS ?2 AND operation = ?3 AND engine = ?4
+             AND expires_at > ?5
+         ORDER BY id DESC LIMIT {EQUAL_JOBS_LOOKED_AT}"
+    )
 }
 
 pub(super) fn list(connection: &Connection, query: &ListQuery, now: i64) -> Result<Vec<JobRow>, StoreError> {
@@ -146,4 +151,20 @@ pub(super) fn counts(connection: &Connection, now: i64) -> Result<JobCounts, Sto
     let queued_bytes: i64 = statement.query_row([], |row| row.get(0))?;
     counts.queued_bytes = u64::try_from(queued_bytes).unwrap_or_default();
     Ok(counts)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn jobs_that_did_the_same_are_found_without_sorting_them() {
+        let mut connection = Connection::open_in_memory().unwrap();
+        super::super::schema::migrate(&mut connection).unwrap();
+        let mut plan = connection.prepare(&format!("EXPLAIN QUERY PLAN {}", equal_jobs_sql())).unwrap();
+        let steps = plan.query_map(params![[0_u8; 32], "owner", "repair", ENGINE_VERSION, 0], |row| row.get(3));
+        let steps = steps.unwrap().collect::<rusqlite::Result<Vec<String>>>().unwrap();
+        let lookup = "SEARCH jobs USING INDEX jobs_by_input (input_sha256=? AND operation=? AND owner=?)";
+        assert_eq!(steps, [lookup]);
+    }
 }

@@ -195,6 +195,7 @@ fn connect(path: &Path) -> Result<Connection, SqliteOpenError> {
     connection.pragma_update(None, "journal_mode", "WAL")?;
     connection.pragma_update(None, "synchronous", "FULL")?;
     connection.pragma_update(None, "foreign_keys", "ON")?;
+    keep_temporary_data_in_memory(&connection)?;
     connection.set_prepared_statement_cache_capacity(128);
     schema::migrate(&mut connection)?;
     Ok(connection)
@@ -213,8 +214,15 @@ fn reader(path: &Path) -> rusqlite::Result<Connection> {
     let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
     let connection = Connection::open_with_flags(path, flags)?;
     connection.busy_timeout(BUSY_PATIENCE)?;
+    keep_temporary_data_in_memory(&connection)?;
     connection.set_prepared_statement_cache_capacity(64);
     Ok(connection)
+}
+
+/// What undoes a change that fails would go to a file in `/var/tmp` otherwise, with each change, as far as there is such a
+/// folder to write to.
+fn keep_temporary_data_in_memory(connection: &Connection) -> rusqlite::Result<()> {
+    connection.pragma_update(None, "temp_store", "MEMORY")
 }
 
 /// What SQLite says, as every store says it.

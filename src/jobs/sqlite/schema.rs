@@ -117,6 +117,9 @@ const MIGRATIONS: &[&str] = &[
     include_str!("tenants.sql"),
     // Uploads that come before their job.
     include_str!("uploads.sql"),
+    // Jobs that did the same come in the order in which they are looked at, the latest first.
+    "DROP INDEX jobs_by_input;
+    CREATE INDEX jobs_by_input ON jobs (input_sha256, operation, owner, id) WHERE state = 'succeeded';",
 ];
 
 /// A file that cannot be used.

@@ -22,6 +22,10 @@ pub use row::{BlobRef, ClaimRef, Ending, IdempotencyKey, JobRow, Lane, NewJob, R
 pub use tenant::{Holding, Tenant};
 pub use uploads::{NewUpload, UploadRow, UploadStore};
 
+/// Most jobs with the same bytes that are looked at for one that did the same: a caller may send a mesh over and over, each time
+/// with other options.
+pub(in crate::jobs) const EQUAL_JOBS_LOOKED_AT: u32 = 64;
+
 /// A store that could not do what was asked.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum StoreError {
@@ -195,7 +199,7 @@ pub trait JobStore: UploadStore {
     fn find_keyed(&self, owner: Option<String>, key: IdempotencyKey) -> StoreFuture<'_, Option<JobRow>>;
 
     /// A succeeded job of the same owner with files that this engine ended and that did the same as `job` is to do, with
-    /// the same bytes.
+    /// the same bytes; one of the latest [`EQUAL_JOBS_LOOKED_AT`] that had these bytes.
     fn find_equal(&self, job: &NewJob) -> StoreFuture<'_, Option<JobRow>>;
 
     /// Jobs, the latest first.

@@ -209,8 +209,12 @@ async fn the_same_bytes_and_options_are_answered_from_the_earlier_job() {
     )
     .await;
     let first = house.run(b"x").await;
+    let meshes = house.settings().data_dir.join("spool/in");
+    let last_change = || std::fs::metadata(&meshes).unwrap().modified().unwrap();
+    let before = last_change();
     let second = house.order(b"x").await.unwrap();
     assert_eq!((second.state, second.cached), (JobState::Succeeded, true));
+    assert_eq!(last_change(), before, "a small upload is written for a job that runs only");
     assert_ne!(first.id, second.id);
     assert_eq!(runs.load(Ordering::SeqCst), 1);
     house.delete(id(&first)).await.unwrap();
@@ -226,7 +230,7 @@ async fn an_upload_that_is_there_holds_a_place_in_the_queue_and_one_that_trickle
     let house = house(|settings| settings.queue_max = 1, mend).await;
     let mut slow = house.upload(None).await.unwrap();
     slow.write(b"x").await.unwrap();
-    let whole = house.send(b"whole").await.unwrap();
+    let whole = house.send(b"whole").await.unwrap().stored().await.unwrap();
     assert_eq!(house.upload(None).await.unwrap_err().code, ProblemCode::QueueFull);
     // What was let in before is refused before it touches the disk.
     assert_eq!(slow.finish().await.unwrap_err().code, ProblemCode::QueueFull);

@@ -140,7 +140,7 @@ async fn an_upload_under_way_is_not_taken_for_an_orphan() {
     let house = house(|_| {}, mend).await;
     let mut upload = house.upload(None).await.unwrap();
     upload.write(&vec![1; 1 << 20]).await.unwrap();
-    let complete = house.send(b"complete").await.unwrap();
+    let complete = house.send(b"complete").await.unwrap().stored().await.unwrap();
     house.service().collect_orphans().await.unwrap();
     assert_eq!(house.spool_files(), 2);
     let uploaded = upload.finish().await.unwrap();

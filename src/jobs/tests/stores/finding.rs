@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::jobs::ListQuery;
+use crate::jobs::store::EQUAL_JOBS_LOOKED_AT;
 
 pub(super) async fn an_equal_job_is_found_by_its_bytes_and_options<H: StoreHouse>() {
     let house = H::open().await;
@@ -34,6 +35,20 @@ pub(super) async fn an_equal_job_of_another_owner_is_not_found<H: StoreHouse>() 
         assert!(store.find_equal(&of(owner)).await.unwrap().is_none(), "{owner:?}");
     }
     assert!(store.find_equal(&of(Some("a"))).await.unwrap().is_some());
+}
+
+pub(super) async fn only_the_latest_jobs_with_the_same_bytes_are_looked_at<H: StoreHouse>() {
+    let house = H::open().await;
+    let store = house.store();
+    let first = succeeded(&*store, job()).await;
+    let same = NewJob { input: first.input.clone(), ..job() };
+    for number in 1..=EQUAL_JOBS_LOOKED_AT {
+        assert_eq!(store.find_equal(&same).await.unwrap().map(|row| row.id), Some(first.id));
+        let options = Options { samples: Some(number), ..Options::default() };
+        let other = NewJob { id: JobId::unique(), options, ending: Some(success(&first)), ..same.clone() };
+        store.create(other, usize::MAX).await.unwrap();
+    }
+    assert!(store.find_equal(&same).await.unwrap().is_none());
 }
 
 pub(super) async fn what_failed_or_has_expired_answers_nothing<H: StoreHouse>() {

@@ -133,6 +133,7 @@ macro_rules! contract {
             finding {
                 an_equal_job_is_found_by_its_bytes_and_options,
                 an_equal_job_of_another_owner_is_not_found,
+                only_the_latest_jobs_with_the_same_bytes_are_looked_at,
                 what_failed_or_has_expired_answers_nothing,
                 jobs_are_listed_the_latest_first_page_by_page,
                 jobs_are_listed_for_their_owner_only,
