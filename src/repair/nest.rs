@@ -4,11 +4,13 @@
 //!
 //! | met in | outward | inward |
 //! |---|---|---|
-//! | void | a body: stays | contradiction |
+//! | void | a body: stays | a body inside out, or a contradiction |
 //! | solid | a hidden wall: dropped, the solid is the same without it | a cavity: stays |
 //!
-//! An outermost shell that points inward says that everything in it is inside out: its whole tree is turned first. A
-//! tree with a contradiction stays as it is. Nothing becomes a cavity that was not one.
+//! A shell in the void outside of everything, or in a cavity, that points inward says that everything in it is inside out,
+//! itself included: it is turned with all that it contains. Around it the winding number is 0 then; where it is not, because the
+//! void lies in several bodies, the shell contradicts the others, and its tree stays as it is. Nothing becomes a cavity that was
+//! not one.
 //!
 //! Two other policies look at places alone: `alternate` makes every second shell a cavity, `fill` keeps the outermost.
 
@@ -143,22 +145,43 @@ fn two_sided_shells(draft: &Draft, shells: &Components) -> Vec<bool> {
     says_nothing
 }
 
+/// The place just inside a shell, or outside of all.
+#[derive(Debug, Clone, Copy, Default)]
+struct Inside {
+    is_solid: bool,
+    /// What is in it is drawn inside out.
+    is_inverted: bool,
+    /// By the directions of the shells around it, once those that are inside out are turned.
+    winding: i32,
+}
+
 /// What becomes of each shell.
 fn decide(nesting: &ShellNesting, says_nothing: &[bool]) -> Vec<ShellFate> {
     let shell_count = nesting.parent.len();
     let mut from_outside_in: Vec<usize> = (0..shell_count).collect();
     from_outside_in.sort_by_key(|&s| nesting.depth[s]);
     let mut root: Vec<usize> = (0..shell_count).collect();
-    let mut is_solid_inside = vec![true; shell_count];
+    let mut insides = vec![Inside::default(); shell_count];
     let mut is_contradictory = vec![false; shell_count];
     let mut fates = vec![ShellFate::Stays; shell_count];
     for s in from_outside_in {
-        let is_met_in_solid = nesting.parent[s].is_some_and(|p| is_solid_inside[p as usize]);
+        let around = nesting.parent[s].map_or(Inside::default(), |p| insides[p as usize]);
         root[s] = nesting.parent[s].map_or(s, |p| root[p as usize]);
-        let is_tree_inverted = !nesting.is_outward[root[s]] && !says_nothing[root[s]];
-        let is_outward = says_nothing[s] || nesting.is_outward[s] != is_tree_inverted;
+        let is_met_in_solid = around.is_solid;
+        let points_outward = says_nothing[s] || nesting.is_outward[s] != around.is_inverted;
+        let is_inside_out = !points_outward && !is_met_in_solid && around.winding == 0;
+        let is_outward = points_outward || is_inside_out;
         is_contradictory[root[s]] |= !is_outward && !is_met_in_solid;
-        is_solid_inside[s] = is_outward;
+        let step = match (says_nothing[s] && is_met_in_solid, is_outward) {
+            (true, _) => 0,
+            (false, true) => 1,
+            (false, false) => -1,
+        };
+        insides[s] = Inside {
+            is_solid: is_outward,
+            is_inverted: around.is_inverted != is_inside_out,
+            winding: around.winding + step,
+        };
         fates[s] = match (is_met_in_solid, is_outward) {
             (true, true) => ShellFate::Goes,
             _ if is_outward != nesting.is_outward[s] => ShellFate::Turns,
@@ -254,20 +277,27 @@ mod tests {
     }
 
     #[test]
-    fn a_cavity_inside_a_cavity_is_a_contradiction_and_left_alone() {
-        assert_eq!(fates(&[true, false, false]), [ShellFate::Stays; 3]);
-        assert_eq!(fates(&[false, true, true]), [ShellFate::Stays; 3]);
+    fn what_points_inward_in_a_cavity_is_inside_out_with_all_that_it_contains() {
+        use ShellFate::{Stays, Turns};
+        assert_eq!(fates(&[true, false, false]), [Stays, Stays, Turns]);
+        assert_eq!(fates(&[true, false, false, true]), [Stays, Stays, Turns, Turns]);
+        assert_eq!(fates(&[true, false, false, true, true]), [Stays, Stays, Turns, Turns, Stays]);
+        assert_eq!(fates(&[false, true, true]), [Turns, Turns, Stays]);
+    }
+
+    #[test]
+    fn what_points_inward_in_the_cavity_of_a_body_in_another_is_a_contradiction_and_left_alone() {
+        assert_eq!(fates(&[true, true, false, false]), [ShellFate::Stays; 4]);
     }
 
     #[test]
     fn a_contradiction_in_one_tree_does_not_keep_another_from_turning() {
-        let mut two_trees = nested(&[true, false, false, false]);
-        two_trees.parent[3] = None;
-        two_trees.depth[3] = 0;
-        assert_eq!(
-            decide(&two_trees, &[false; 4]),
-            [ShellFate::Stays, ShellFate::Stays, ShellFate::Stays, ShellFate::Turns]
-        );
+        let mut two_trees = nested(&[true, true, false, false, false]);
+        two_trees.parent[4] = None;
+        two_trees.depth[4] = 0;
+        let mut fates = [ShellFate::Stays; 5];
+        fates[4] = ShellFate::Turns;
+        assert_eq!(decide(&two_trees, &[false; 5]), fates);
     }
 
     #[test]

@@ -236,3 +236,40 @@ fn a_counterbore_of_two_cylinders_stays_open() {
         );
     }
 }
+
+#[test]
+fn what_is_drawn_inside_out_in_a_cavity_keeps_its_own_cavities() {
+    let centred = |half: i32, is_inverted: bool| ([-half; 3], [2 * half; 3], is_inverted);
+    // The first two are a body with a cavity; in that there are bodies, of which some are inside out.
+    for (inner, expected) in [
+        (vec![centred(5, true)], 4904.0),
+        (vec![centred(5, true), centred(3, false)], 4688.0),
+        (vec![centred(5, true), centred(3, false), centred(1, true)], 4696.0),
+        (vec![centred(5, true), centred(3, false), centred(1, false)], 4696.0),
+        (vec![([-7; 3], [4; 3], true), ([-6; 3], [2; 3], false), ([2; 3], [4; 3], false)], 4024.0),
+    ] {
+        for all_turned in [false, true] {
+            let drawn = [centred(10, false), centred(8, true)].into_iter().chain(inner.clone());
+            let drawn: Vec<_> =
+                drawn.map(|(low, size, is_inverted)| (low, size, is_inverted != all_turned)).collect();
+            let answer = run(Operation::Repair, boxes(&drawn), &Options::default(), &Budget::unlimited());
+            let answer = answer.unwrap();
+            assert_eq!(figures(&answer), (drawn.len(), expected));
+            assert_faithful(&answer);
+        }
+    }
+    let round = |radius: f64| cylinder(24, radius, [-radius, radius]);
+    let drawn = round(10.0).with(&round(8.0).inside_out()).with(&round(5.0).inside_out()).with(&round(3.0));
+    for file in [drawn.clone(), drawn.inside_out()] {
+        let answer = repaired(&file);
+        let (shells, found) = figures(&answer);
+        let expected = [(10.0, 1.0), (8.0, -1.0), (5.0, 1.0), (3.0, -1.0)]
+            .map(|(radius, sign)| sign * volume(24, radius, 2.0 * radius));
+        let expected = expected.iter().sum::<f64>();
+        assert!(
+            shells == 4 && (found - expected).abs() < 1e-3 * expected,
+            "{shells} {found}, not {expected}"
+        );
+        assert_faithful(&answer);
+    }
+}

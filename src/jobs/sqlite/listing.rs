@@ -162,7 +162,8 @@ mod tests {
         let mut connection = Connection::open_in_memory().unwrap();
         super::super::schema::migrate(&mut connection).unwrap();
         let mut plan = connection.prepare(&format!("EXPLAIN QUERY PLAN {}", equal_jobs_sql())).unwrap();
-        let steps = plan.query_map(params![[0_u8; 32], "owner", "repair", ENGINE_VERSION, 0], |row| row.get(3));
+        let steps =
+            plan.query_map(params![[0_u8; 32], "owner", "repair", ENGINE_VERSION, 0], |row| row.get(3));
         let steps = steps.unwrap().collect::<rusqlite::Result<Vec<String>>>().unwrap();
         let lookup = "SEARCH jobs USING INDEX jobs_by_input (input_sha256=? AND operation=? AND owner=?)";
         assert_eq!(steps, [lookup]);
