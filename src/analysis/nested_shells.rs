@@ -9,7 +9,7 @@ use super::shells::OrientedShell;
 use super::{Context, DefectCode, Finding, Witness, double_skins};
 use crate::budget::{CHECK_EVERY, Stopped};
 use crate::geom::Sign;
-use crate::spatial::{Bvh, nest};
+use crate::spatial::{Bvh, NO_SHELL, nest};
 
 pub(super) fn find(cx: &Context<'_>) -> Result<Vec<Finding>, Stopped> {
     let Ways { inverted, misnested, nested } = ways(cx)?;
@@ -112,14 +112,17 @@ fn free_shells(cx: &Context<'_>) -> Result<Vec<bool>, Stopped> {
 
 /// The innermost shell around each of the `free` ones, as an index into them.
 fn parents(cx: &Context<'_>, free: &[OrientedShell]) -> Result<Vec<Option<u32>>, Stopped> {
-    let members =
-        || free.iter().enumerate().flat_map(|(i, s)| cx.members.part(s.part).iter().map(move |&t| (i, t)));
-    let triangles: Vec<[u32; 3]> = members().map(|(_, t)| cx.mesh.triangles[t as usize]).collect();
-    let shell_of: Vec<u32> = members().map(|(i, _)| i as u32).collect();
+    let (positions, triangles) = (&cx.mesh.soup.positions, &cx.mesh.triangles);
+    let mut shell_of = vec![NO_SHELL; triangles.len()];
+    for (shell, free) in (0..).zip(free) {
+        cx.members.part(free.part).iter().for_each(|&t| shell_of[t as usize] = shell);
+    }
     cx.budget.check()?;
-    let positions = &cx.mesh.soup.positions;
-    let bvh = Bvh::build(positions, &triangles, None, cx.budget)?;
-    Ok(nest(positions, &triangles, &shell_of, free.len() as u32, &bvh, cx.budget)?.parent)
+    let mut members = Vec::with_capacity(triangles.len());
+    members.extend((0..).zip(&shell_of).filter(|&(_, &shell)| shell != NO_SHELL).map(|(t, _)| t));
+    let bvh = Bvh::build(positions, triangles, Some(&members), cx.budget)?;
+    drop(members);
+    Ok(nest(positions, triangles, &shell_of, free.len() as u32, &bvh, cx.budget)?.parent)
 }
 
 #[cfg(test)]

@@ -104,10 +104,10 @@ fn divide<'b>(
         clusters: Vec::new(),
         new_points: Vec::new(),
         new_positions: Vec::new(),
-        pieces: Vec::with_capacity(sound.len()),
-        planes: Vec::with_capacity(sound.len()),
+        pieces: Vec::new(),
+        planes: Vec::new(),
         source_starts: vec![0],
-        sources: Vec::with_capacity(sound.len()),
+        sources: Vec::new(),
         operands: usize::from(options.operands.max(1)),
         windings: Vec::new(),
     };
@@ -115,7 +115,9 @@ fn divide<'b>(
     let account = CrossingAccount::new(options.crossings_max, budget);
     let (is_met, mut charges) = divide_clusters(&mut arrangement, &welded, &pairs, &account)?;
     charges.push(charge);
-    for &t in sound.iter().filter(|&&t| !is_met[t as usize]) {
+    let whole = sound.iter().filter(|&&t| !is_met[t as usize]);
+    arrangement.reserve_exact(whole.clone().count());
+    for &t in whole {
         arrangement.push(welded[t as usize], t, [(t, false)]);
     }
     arrangement.new_positions = rounded(&arrangement, budget)?;
@@ -265,6 +267,14 @@ impl Arrangement {
         self.planes.push(plane);
         self.sources.extend(sources);
         self.source_starts.push(self.sources.len() as u32);
+    }
+
+    /// Makes room for so many pieces more, each of one triangle.
+    fn reserve_exact(&mut self, pieces: usize) {
+        self.pieces.reserve_exact(pieces);
+        self.planes.reserve_exact(pieces);
+        self.sources.reserve_exact(pieces);
+        self.source_starts.reserve_exact(pieces);
     }
 
     /// Adds the pieces of a cluster, whose new points are numbered in the order in which they are used.

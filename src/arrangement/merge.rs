@@ -50,8 +50,7 @@ impl Arrangement {
         let corners: Vec<[u32; 3]> = surface.pieces.iter().map(|piece| piece.corners).collect();
         let groups = EdgeGroups::build(&corners, self.point_count(), budget)?;
         let is_whole = |piece: &BoundaryPiece| cluster_of(piece.source).is_none();
-        let mut merged =
-            MergedBoundary::with_capacity(surface.pieces.iter().filter(|piece| is_whole(piece)).count());
+        let mut merged = MergedBoundary::with_capacity(surface.pieces.len());
         // Where a whole triangle ends, two of its edges do, which are not on one line.
         let mut stays_for_triangle = vec![false; self.point_count()];
         for piece in surface.pieces.iter().filter(|piece| is_whole(piece)) {

@@ -94,7 +94,7 @@ fn finished(
 ) -> Result<Answer, Failure> {
     let Climb { input, options, budget, .. } = *climb;
     let Certified { attempt, candidate, as_seen: fidelity, .. } = certified;
-    let Attempt { draft, actions, steps, holes, .. } = attempt;
+    let Attempt { mut draft, actions, steps, holes, .. } = attempt;
     if let Some(refusal) = fidelity.breach(&options.limits) {
         return Ok(Report { actions, ..report }.refused(refusal));
     }
@@ -105,7 +105,10 @@ fn finished(
         let report = report.made_by([steps, vec![Step::Simplify]].concat());
         return fewer.returned(input, &draft, report, outcome, options, budget);
     }
-    Ok(candidate.returned(input, &draft.triangle_origin, report.made_by(steps), outcome, budget)?)
+    // What is told of the result needs the memory of the mesh that it was written from.
+    let origins = std::mem::take(&mut draft.triangle_origin);
+    drop(draft);
+    Ok(candidate.returned(input, &origins, report.made_by(steps), outcome, budget)?)
 }
 
 /// Runs exactly `steps`, as a plan gives them.

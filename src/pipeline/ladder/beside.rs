@@ -1,10 +1,11 @@
 //! Other plans that are tried beside a result of the first one: where it is certified and lost much the closer result is kept.
 
 use super::climb::{Certified, Climb, RungResult, Situation};
-use crate::pipeline::plan::{Attempt, Variant};
+use crate::pipeline::plan::Variant;
 use crate::pipeline::repair_choices::Walls;
 use crate::pipeline::{Failure, Require};
 use crate::repair::duplicates::OppositePairs;
+use crate::repair::fill::HoleReport;
 use crate::winding::OpenShells;
 
 /// Such a plan may take one of so many parts of the work that is left.
@@ -34,7 +35,7 @@ impl Climb<'_> {
         closed: Box<Certified>,
         situation: &mut Situation,
     ) -> Result<Box<Certified>, Failure> {
-        if closed.fidelity.losses.invented <= INVENTED_MAX || !has_several_rims(&closed.attempt) {
+        if closed.fidelity.losses.invented <= INVENTED_MAX || !has_several_rims(&closed.attempt.holes) {
             return Ok(closed);
         }
         situation.has_tried_bridging = true;
@@ -116,6 +117,6 @@ impl Climb<'_> {
 }
 
 /// True when more than one rim was to be closed.
-pub(super) fn has_several_rims(attempt: &Attempt) -> bool {
-    attempt.holes.iter().map(|hole| hole.loops).sum::<u64>() > 1
+pub(super) fn has_several_rims(holes: &[HoleReport]) -> bool {
+    holes.iter().map(|hole| hole.loops).sum::<u64>() > 1
 }

@@ -8,7 +8,7 @@ pub(super) const RUNG: Rung = Rung {
     name: "bridges",
     kind: RungKind::Plan,
     applies: |_, situation| {
-        let has_several_rims = |last: &Uncertified| beside::has_several_rims(&last.attempt);
+        let has_several_rims = |last: &Uncertified| beside::has_several_rims(&last.holes);
         Ok(!situation.has_tried_bridging && situation.last.as_ref().is_some_and(has_several_rims))
     },
     tries: |climb, situation| {

@@ -12,7 +12,7 @@ pub(super) const RUNG: Rung = Rung {
         // Patches over such gaps meet the surface that lies over them.
         let has_gaps = |last: &Uncertified| {
             let met = |reason| matches!(reason, Rejection::MeetsOther | Rejection::EdgeInUse);
-            let mut open = last.attempt.holes.iter().filter(|hole| hole.used.is_none());
+            let mut open = last.holes.iter().filter(|hole| hole.used.is_none());
             open.any(|hole| hole.rejected.iter().any(|rejected| met(rejected.reason)))
         };
         Ok(climb.choices.may_join_rims()

@@ -18,7 +18,7 @@ use crate::pipeline::repair_choices::{Choices, Walls};
 use crate::pipeline::size::diagonal;
 use crate::pipeline::step::Step;
 use crate::pipeline::{Action, Failure, FidelityLimits, Options, Refusal, Require};
-use crate::repair::fill::HoleReport;
+use crate::repair::fill::{HoleReport, Rejection};
 use crate::repair::nest::NestingPolicy;
 use crate::repair::noise::Noise;
 use crate::repair::{Draft, Effects, noise};
@@ -101,12 +101,25 @@ pub(super) struct Openness {
     pub(super) is_sheets: bool,
 }
 
-/// An attempt that is no valid solid.
+/// What an attempt that is no valid solid leaves.
 pub(super) struct Uncertified {
-    pub(super) attempt: Attempt,
+    pub(super) holes: Vec<HoleReport>,
+    pub(super) effects: Effects,
+    /// Its mesh, where it left flat sheets and no other hole. Otherwise it goes: other attempts need the memory.
+    pub(super) with_sheets: Option<Draft>,
+    actions: Vec<Action>,
     /// Without the steps that join what was cut; only where the best effort was asked for.
     pub(super) mended: Option<Box<Attempt>>,
     pub(super) refusal: Refusal,
+}
+
+/// True when something was left open, all of it flat sheets.
+fn leaves_sheets(holes: &[HoleReport]) -> bool {
+    let is_flat = |hole: &HoleReport| {
+        hole.rejected.last().is_some_and(|rejected| rejected.reason == Rejection::FlatSheet)
+    };
+    let mut left = holes.iter().filter(|hole| hole.used.is_none()).peekable();
+    left.peek().is_some() && left.all(is_flat)
 }
 
 impl Situation {
@@ -186,7 +199,7 @@ impl Situation {
         if let Some(certified) = self.certified {
             return Climbed::Certified(certified);
         }
-        let Some(Uncertified { attempt, mended, refusal }) = self.last else {
+        let Some(Uncertified { actions, mended, refusal, .. }) = self.last else {
             let (refusal, actions) = self.not_rebuilt.unwrap_or((over_budget, Vec::new()));
             return refused(refusal, actions);
         };
@@ -195,7 +208,7 @@ impl Situation {
             None => matches!(refusal, Refusal::NotRepairable { .. }),
         };
         let refusal = if self.has_run_out { over_budget } else { refusal };
-        let (refusal, actions) = self.not_rebuilt.unwrap_or((refusal, attempt.actions));
+        let (refusal, actions) = self.not_rebuilt.unwrap_or((refusal, actions));
         match mended.filter(|_| may_be_partial) {
             Some(mended) => Climbed::Mended(mended),
             None => refused(refusal, actions),
@@ -244,7 +257,9 @@ impl Climb<'_> {
                 Ok(Some(RungResult::Certified(Box::new(certified))))
             }
             Judgement::Not(refusal) => {
-                situation.last = Some(Uncertified { attempt, mended, refusal });
+                let Attempt { draft, holes, effects, actions, .. } = attempt;
+                let with_sheets = leaves_sheets(&holes).then_some(draft);
+                situation.last = Some(Uncertified { holes, effects, with_sheets, actions, mended, refusal });
                 Ok(None)
             }
         }

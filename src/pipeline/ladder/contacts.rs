@@ -25,7 +25,7 @@ pub(super) const RUNG: Rung = Rung {
 fn contact(climb: &Climb<'_>, situation: &Situation) -> Option<Contact> {
     // Bodies that lie on each other would be parted by a gap that nobody wants.
     let only_touches = climb.before.is_some_and(|before| before.properties.is_embedded == Some(true));
-    let has_copied = || situation.last.as_ref().is_some_and(|last| last.attempt.effects.copied_vertices);
+    let has_copied = || situation.last.as_ref().is_some_and(|last| last.effects.copied_vertices);
     match situation.variant.contact {
         None => (only_touches && has_copied()).then_some(climb.options.contact),
         Some(Contact::Join) => Some(Contact::Open),

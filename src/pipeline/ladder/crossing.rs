@@ -26,8 +26,7 @@ pub(super) const RUNG: Rung = Rung {
             let mends_thin_faces = situation.variant.mends_thin_faces;
             let found =
                 climb.try_plan(Variant { removes_crossing, mends_thin_faces, ..variant }, situation)?;
-            let has_removed =
-                situation.last.as_ref().is_some_and(|last| last.attempt.effects.removed_crossing);
+            let has_removed = situation.last.as_ref().is_some_and(|last| last.effects.removed_crossing);
             if found.is_some() || !situation.may_try(RungKind::Plan) || !has_removed {
                 return Ok(found);
             }

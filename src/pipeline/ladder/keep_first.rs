@@ -8,7 +8,7 @@ pub(super) const RUNG: Rung = Rung {
     name: "keep-first",
     kind: RungKind::Plan,
     applies: |_, situation| {
-        Ok(situation.last.as_ref().is_some_and(|last| last.attempt.effects.cancelled_opposite_pairs))
+        Ok(situation.last.as_ref().is_some_and(|last| last.effects.cancelled_opposite_pairs))
     },
     tries: |climb, situation| {
         let opposite = OppositePairs::KeepFirst;

@@ -6,7 +6,6 @@ use crate::budget::{Budget, Stopped};
 use crate::mesh::triangle_of;
 use crate::pipeline::plan::Variant;
 use crate::repair::Draft;
-use crate::repair::fill::{HoleReport, Rejection};
 
 /// Flat sheets that are at most this share of the surface are strays: what the rest is without them, it is with them.
 const STRAYS_MAX: f64 = 0.1;
@@ -15,20 +14,15 @@ pub(super) const RUNG: Rung = Rung {
     name: "sheets-left",
     kind: RungKind::Plan,
     applies: |climb, situation| {
-        let is_flat = |hole: &&HoleReport| {
-            hole.rejected.last().is_some_and(|rejected| rejected.reason == Rejection::FlatSheet)
-        };
-        let holes = situation.last.as_ref().map_or(&[][..], |last| &last.attempt.holes);
-        let left: Vec<&HoleReport> = holes.iter().filter(|hole| hole.used.is_none()).collect();
-        let leaves_sheets = !left.is_empty() && left.iter().all(is_flat);
         let may_wall = climb.may_wall_sheets() && climb.choices.fills_all_holes();
         let variant = situation.variant;
         let was_tried = situation.has_tried_sheets_left || variant.thickens || variant.contact.is_some();
         // Where all is sheets, holes in them are a part of their shape.
-        let Some(last) = situation.last.as_ref().filter(|_| may_wall && !was_tried && leaves_sheets) else {
+        let with_sheets = situation.last.as_ref().and_then(|last| last.with_sheets.as_ref());
+        let Some(draft) = with_sheets.filter(|_| may_wall && !was_tried) else {
             return Ok(false);
         };
-        let are_strays = open_share(&last.attempt.draft, climb.budget)? <= STRAYS_MAX;
+        let are_strays = open_share(draft, climb.budget)? <= STRAYS_MAX;
         Ok(are_strays || !climb.openness(situation)?.is_sheets)
     },
     tries: |climb, situation| {
