@@ -157,8 +157,8 @@ impl Upload {
         self.files.push(self.bytes - self.files.iter().sum::<u64>());
     }
 
-    /// Ends the upload. What fits into one block is not on the disk until it is [stored](Uploaded::stored): an answer that is
-    /// known needs no file.
+    /// Ends the upload. What fits into one block is not on the disk until a job is made of it: an answer that is known needs
+    /// no file.
     ///
     /// # Errors
     /// `queue-full`, `storage-full`, `internal` when the disk fails.

@@ -199,7 +199,7 @@ pub trait JobStore: UploadStore {
     fn find_keyed(&self, owner: Option<String>, key: IdempotencyKey) -> StoreFuture<'_, Option<JobRow>>;
 
     /// A succeeded job of the same owner with files that this engine ended and that did the same as `job` is to do, with
-    /// the same bytes; one of the latest [`EQUAL_JOBS_LOOKED_AT`] that had these bytes.
+    /// the same bytes; one of the latest 64 that had these bytes.
     fn find_equal(&self, job: &NewJob) -> StoreFuture<'_, Option<JobRow>>;
 
     /// Jobs, the latest first.
