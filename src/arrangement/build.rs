@@ -6,12 +6,13 @@ use super::constraints::CrossingAccount;
 use super::enclosed;
 use super::error::ArrangementError;
 use super::point::Definition;
+use super::welded::Welded;
 use super::{Arrangement, Cluster};
 use crate::budget::{Budget, CHECK_EVERY, Charge};
-use crate::geom::{DVec3, are_collinear};
+use crate::geom::DVec3;
 use crate::mesh::UnionFind;
 use crate::par;
-use crate::spatial::{Bvh, ContactKind, Search, self_contacts};
+use crate::spatial::Bvh;
 
 /// Units of work of rounding a new point.
 const ROUNDING: u64 = 4;
@@ -51,8 +52,23 @@ pub fn arrange(
     options: &ArrangementOptions,
     budget: &Budget,
 ) -> Result<Arrangement, ArrangementError> {
+    arrange_in(None, positions, triangles, operand_of, options, budget)
+}
+
+/// As [`arrange`] where the hierarchy of all triangles may be `known`.
+///
+/// # Errors
+/// See [`ArrangementError`].
+pub fn arrange_in(
+    known: Option<Bvh>,
+    positions: &[DVec3],
+    triangles: &[[u32; 3]],
+    operand_of: impl Fn(u32) -> u8 + Sync,
+    options: &ArrangementOptions,
+    budget: &Budget,
+) -> Result<Arrangement, ArrangementError> {
     let Unwound { mut arrangement, triangles, bvh, _charges } =
-        divide(positions, triangles, options, budget)?;
+        divide(known, positions, triangles, options, budget)?;
     cells::wind(&mut arrangement, &triangles, operand_of, bvh, budget)?;
     Ok(arrangement)
 }
@@ -68,7 +84,8 @@ pub fn arrange_enclosed(
     options: &ArrangementOptions,
     budget: &Budget,
 ) -> Result<Arrangement, ArrangementError> {
-    let Unwound { mut arrangement, triangles, _charges, .. } = divide(positions, triangles, options, budget)?;
+    let Unwound { mut arrangement, triangles, _charges, .. } =
+        divide(None, positions, triangles, options, budget)?;
     enclosed::enclose(&mut arrangement, &triangles, budget)?;
     Ok(arrangement)
 }
@@ -83,22 +100,15 @@ struct Unwound<'b> {
 }
 
 fn divide<'b>(
+    known: Option<Bvh>,
     positions: &[DVec3],
     triangles: &[[u32; 3]],
     options: &ArrangementOptions,
     budget: &'b Budget,
 ) -> Result<Unwound<'b>, ArrangementError> {
-    let welded = weld(positions, triangles, budget)?;
-    let sound = sound(positions, &welded, budget)?;
-    let bvh = Bvh::build(positions, &welded, Some(&sound), budget)?;
-    let mut pairs = copies(&welded, &sound, budget)?;
-    let most = options.pairs_max;
-    let contacts = self_contacts(positions, &welded, &bvh, None, Search::UpTo { most }, budget)?;
-    let count = contacts.count + pairs.len() as u64;
-    if count > most as u64 {
-        return Err(ArrangementError::TooManyPairs { count, limit: most as u64 });
-    }
-    pairs.extend(contacts.list.iter().map(|c| ContactPair { triangles: [c.a, c.b], kind: c.kind }));
+    let welded = Welded::of(positions, triangles, budget)?;
+    let (pairs, bvh) = welded.meeting(known, options.pairs_max, budget)?;
+    let Welded { triangles: welded, sound, .. } = welded;
     let mut arrangement = Arrangement {
         positions: positions.to_vec(),
         clusters: Vec::new(),
@@ -135,69 +145,6 @@ fn rounded(arrangement: &Arrangement, budget: &Budget) -> Result<Vec<DVec3>, Arr
         Ok::<_, ArrangementError>(arrangement.new_points[range].iter().map(rounded).collect::<Vec<_>>())
     })?;
     Ok(parts.concat())
-}
-
-/// The triangles with the first of all vertices at one position in the place of each.
-fn weld(
-    positions: &[DVec3],
-    triangles: &[[u32; 3]],
-    budget: &Budget,
-) -> Result<Vec<[u32; 3]>, ArrangementError> {
-    for (t, corners) in triangles.iter().enumerate() {
-        if t % CHECK_EVERY == 0 {
-            budget.spend(CHECK_EVERY as u64)?;
-        }
-        if !corners.iter().all(|&v| positions.get(v as usize).is_some_and(|p| p.is_finite())) {
-            return Err(ArrangementError::NotFinite { triangle: t as u32 });
-        }
-    }
-    // Adding zero makes -0 the same as 0.
-    let key = |v: u32| (positions[v as usize] + DVec3::ZERO).to_array().map(f64::to_bits);
-    let mut order: Vec<([u64; 3], u32)> = (0..positions.len() as u32).map(|v| (key(v), v)).collect();
-    par::sort_unstable(&mut order);
-    let mut first: Vec<u32> = vec![0; positions.len()];
-    for same in order.chunk_by(|a, b| a.0 == b.0) {
-        for &(_, v) in same {
-            first[v as usize] = same[0].1;
-        }
-    }
-    Ok(triangles.iter().map(|corners| corners.map(|v| first[v as usize])).collect())
-}
-
-/// The triangles that have an area, ascending.
-fn sound(positions: &[DVec3], triangles: &[[u32; 3]], budget: &Budget) -> Result<Vec<u32>, ArrangementError> {
-    let parts = par::try_map_ranges(triangles.len(), CHECK_EVERY, |range| {
-        budget.check()?;
-        let has_area = |&t: &usize| {
-            let [a, b, c] = triangles[t].map(|v| positions[v as usize]);
-            !are_collinear(a, b, c)
-        };
-        Ok::<_, ArrangementError>(range.filter(has_area).map(|t| t as u32).collect::<Vec<u32>>())
-    })?;
-    Ok(parts.concat())
-}
-
-/// Pairs of triangles with the same vertices: each with the first.
-fn copies(
-    triangles: &[[u32; 3]],
-    sound: &[u32],
-    budget: &Budget,
-) -> Result<Vec<ContactPair>, ArrangementError> {
-    budget.spend(sound.len() as u64)?;
-    let key = |t: u32| {
-        let mut corners = triangles[t as usize];
-        corners.sort_unstable();
-        (corners, t)
-    };
-    let mut order: Vec<([u32; 3], u32)> = sound.iter().map(|&t| key(t)).collect();
-    par::sort_unstable(&mut order);
-    let mut pairs = Vec::new();
-    for same in order.chunk_by(|a, b| a.0 == b.0) {
-        let pair =
-            |&(_, t): &([u32; 3], u32)| ContactPair { triangles: [same[0].1, t], kind: ContactKind::Overlap };
-        pairs.extend(same[1..].iter().map(pair));
-    }
-    Ok(pairs)
 }
 
 /// Divides the clusters of triangles that meet and adds their pieces; tells which triangles are in one, with what they all take.

@@ -5,8 +5,8 @@
 //! all others. At an open edge a piece looks at its own back, so that an open part encloses nothing.
 
 use super::Arrangement;
-use super::cells::{self, PieceSide};
 use super::error::ArrangementError;
+use super::walls::{PieceSide, Walls};
 use crate::budget::{Budget, CHECK_EVERY};
 use crate::mesh::EdgeGroups;
 use num_bigint::BigInt;
@@ -24,27 +24,29 @@ pub(super) fn enclose(
     budget: &Budget,
 ) -> Result<(), ArrangementError> {
     let count = arrangement.pieces.len();
-    let _charge = budget.charge((count * 48) as u64)?;
+    let _charge = budget.charge((count * 8) as u64)?;
     let groups = EdgeGroups::build(&arrangement.pieces, arrangement.point_count(), budget)?;
-    let links = cells::links(arrangement, triangles, &groups, budget)?;
+    let walls = Walls::find(arrangement, triangles, &groups, budget)?;
+    let mut of_walls = vec![1; 2 * walls.count()];
     let mut outside = Vec::new();
     for top in tops(arrangement, &groups, budget)? {
-        outside.extend(top.shown_upward(arrangement, budget)?);
-    }
-    let mut windings = vec![1; 2 * count];
-    for &side in &outside {
-        windings[side as usize] = 0;
+        for side in top.shown_upward(arrangement, budget)? {
+            let side = walls.side(side);
+            if std::mem::replace(&mut of_walls[side as usize], 0) != 0 {
+                outside.push(side);
+            }
+        }
     }
     while let Some(side) = outside.pop() {
         budget.spend(1)?;
-        for h in 3 * (side / 2)..3 * (side / 2) + 3 {
-            let next = links[(2 * h + side % 2) as usize];
-            if std::mem::replace(&mut windings[next as usize], 0) != 0 {
+        for next in walls.facing(side) {
+            if std::mem::replace(&mut of_walls[next as usize], 0) != 0 {
                 outside.push(next);
             }
         }
     }
-    arrangement.windings = windings;
+    budget.spend(count as u64)?;
+    arrangement.windings = (0..2 * count as u32).map(|side| of_walls[walls.side(side) as usize]).collect();
     Ok(())
 }
 

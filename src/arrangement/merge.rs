@@ -47,16 +47,29 @@ impl Arrangement {
     ) -> Result<MergedBoundary, ArrangementError> {
         let clusters = self.cluster_of_triangles();
         let cluster_of = |t: u32| clusters.get(&t).copied();
-        let corners: Vec<[u32; 3]> = surface.pieces.iter().map(|piece| piece.corners).collect();
-        let groups = EdgeGroups::build(&corners, self.point_count(), budget)?;
-        let is_whole = |piece: &BoundaryPiece| cluster_of(piece.source).is_none();
+        budget.spend(surface.pieces.len() as u64)?;
         let mut merged = MergedBoundary::with_capacity(surface.pieces.len());
         // Where a whole triangle ends, two of its edges do, which are not on one line.
         let mut stays_for_triangle = vec![false; self.point_count()];
-        for piece in surface.pieces.iter().filter(|piece| is_whole(piece)) {
-            merged.push(piece.corners, piece.source, true);
-            piece.corners.iter().for_each(|&p| stays_for_triangle[p as usize] = true);
+        let mut is_of_divided = vec![false; self.point_count()];
+        let mut divided: Vec<&BoundaryPiece> = Vec::new();
+        for piece in &surface.pieces {
+            let of_points = if cluster_of(piece.source).is_some() {
+                divided.push(piece);
+                &mut is_of_divided
+            } else {
+                merged.push(piece.corners, piece.source, true);
+                &mut stays_for_triangle
+            };
+            piece.corners.iter().for_each(|&p| of_points[p as usize] = true);
         }
+        // Between whole triangles nothing is to be found: only what has an edge with a divided one is looked at.
+        let may_touch = |piece: &&BoundaryPiece| {
+            piece.corners.iter().filter(|&&p| is_of_divided[p as usize]).count() >= 2
+        };
+        let near: Vec<&BoundaryPiece> = surface.pieces.iter().filter(may_touch).collect();
+        let corners: Vec<[u32; 3]> = near.iter().map(|piece| piece.corners).collect();
+        let groups = EdgeGroups::build(&corners, self.point_count(), budget)?;
         // For each triangle of a cluster, either way round, the half-edges of its pieces that stay.
         let mut stays: Vec<(u32, bool, [u32; 2])> = Vec::new();
         let mut ends: Vec<(u32, u32, u32)> = Vec::new();
@@ -65,7 +78,7 @@ impl Arrangement {
                 budget.spend(CHECK_EVERY as u64)?;
             }
             let name = |&h: &u32| {
-                let piece = &surface.pieces[triangle_of(h) as usize];
+                let piece = near[triangle_of(h) as usize];
                 (piece.source, piece.is_opposite)
             };
             if group.len() == 2 && name(&group[0]) == name(&group[1]) {
@@ -86,13 +99,10 @@ impl Arrangement {
         drop((groups, corners));
         let (needed, goes) = self.needless(ends, budget)?;
         let mut inside: Vec<(u32, bool, u32)> = Vec::new();
-        for piece in &surface.pieces {
-            budget.spend(1)?;
-            if cluster_of(piece.source).is_some() {
-                let is_needed = |p: &u32| stays_for_triangle[*p as usize] || needed.binary_search(p).is_ok();
-                let needed = piece.corners.into_iter().filter(is_needed);
-                inside.extend(needed.map(|p| (piece.source, piece.is_opposite, p)));
-            }
+        for piece in divided {
+            let is_needed = |p: &u32| stays_for_triangle[*p as usize] || needed.binary_search(p).is_ok();
+            let needed = piece.corners.into_iter().filter(is_needed);
+            inside.extend(needed.map(|p| (piece.source, piece.is_opposite, p)));
         }
         let regions = regions(stays, inside, &goes)?;
         let parts = par::try_map_ranges(regions.len(), 16, |range| {

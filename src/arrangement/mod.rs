@@ -33,8 +33,10 @@ mod ray;
 #[cfg(test)]
 mod tests;
 mod triangulation;
+mod walls;
+mod welded;
 
-pub use build::{ArrangementOptions, arrange, arrange_enclosed};
+pub use build::{ArrangementOptions, arrange, arrange_enclosed, arrange_in};
 pub use error::ArrangementError;
 pub use extract::{BoundaryPiece, SolidBoundary};
 pub use merge::MergedBoundary;

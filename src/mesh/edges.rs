@@ -18,8 +18,10 @@ pub struct EdgeGroups {
     diagonals: usize,
 }
 
-/// Parts of the vertex range that are grouped at the same time; fixed, so that the result is too.
-const PARTS: usize = 8;
+/// Most parts of the vertex range, which are grouped at the same time.
+const PARTS_MAX: usize = 16;
+/// Triangles in a block, of which it is known which parts their edges are of.
+const BLOCK: usize = 64;
 
 impl EdgeGroups {
     /// Groups the half-edges of `triangles`, whose indices must be below `vertex_count`. O(n) by counting sort on the
@@ -32,21 +34,20 @@ impl EdgeGroups {
     /// With 2^32 / 3 triangles or more; the readers' limits keep counts below.
     pub fn build(triangles: &[[u32; 3]], vertex_count: usize, budget: &Budget) -> Result<Self, Stopped> {
         assert!(triangles.len() < (u32::MAX / 3) as usize, "too many triangles for 32-bit half-edges");
-        // Half-edges, group starts of the parts and of all, and where each vertex begins, twice.
-        let _charge = budget.charge(triangles.len() as u64 * 3 * 8 + vertex_count as u64 * 8)?;
-        let offsets = offsets_by_smaller_vertex(triangles, vertex_count, budget)?;
+        // Half-edges, group starts of the parts and of all, where each vertex begins, twice, and the keys of two parts.
+        let _charge = budget.charge(triangles.len() as u64 * 3 * 9 + vertex_count as u64 * 8)?;
+        let (offsets, blocks) = offsets_by_smaller_vertex(triangles, vertex_count, budget)?;
         let mut half_edges = vec![0u32; triangles.len() * 3];
-        let part_len = vertex_count.div_ceil(PARTS).max(1);
-        let mut parts = Vec::with_capacity(PARTS);
+        let mut parts = Vec::with_capacity(PARTS_MAX);
         let mut rest = &mut half_edges[..];
-        for first in (0..vertex_count).step_by(part_len) {
-            let offsets = &offsets[first..=(first + part_len).min(vertex_count)];
+        for first in (0..vertex_count).step_by(1 << blocks.shift) {
+            let offsets = &offsets[first..=(first + (1 << blocks.shift)).min(vertex_count)];
             let (part, others) = rest.split_at_mut((offsets[offsets.len() - 1] - offsets[0]) as usize);
             parts.push((offsets, part));
             rest = others;
         }
         let starts_of_parts = par::map_items(parts, |part, (offsets, half_edges)| {
-            group_part(triangles, (part * part_len) as u32, offsets, half_edges, budget)
+            group_part(triangles, &blocks, part, offsets, half_edges, budget)
         });
         let mut starts = Vec::with_capacity(triangles.len() * 3 / 2 + 2);
         for part in starts_of_parts {
@@ -158,80 +159,91 @@ impl EdgeGroups {
     }
 }
 
+/// Which parts of the vertex range the smaller vertices of edges are in: part `p` begins at vertex `p << shift`.
+struct Blocks {
+    shift: u32,
+    /// For each [`BLOCK`] triangles, a bit for each part.
+    parts: Vec<u16>,
+}
+
 /// Where the half-edges of each smaller vertex begin, and the end.
 fn offsets_by_smaller_vertex(
     triangles: &[[u32; 3]],
     vertex_count: usize,
     budget: &Budget,
-) -> Result<Vec<u32>, Stopped> {
+) -> Result<(Vec<u32>, Blocks), Stopped> {
+    let shift = vertex_count.div_ceil(PARTS_MAX).next_power_of_two().ilog2();
     let mut offsets = vec![0u32; vertex_count + 1];
-    for_each_edge(triangles, 0, vertex_count, budget, |_, min, _| offsets[min + 1] += 1)?;
+    let mut parts = Vec::with_capacity(triangles.len().div_ceil(BLOCK));
+    for (i, block) in triangles.chunks(BLOCK).enumerate() {
+        if i % (CHECK_EVERY / BLOCK) == 0 {
+            budget.check()?;
+        }
+        let mut parts_here = 0;
+        for &[a, b, c] in block {
+            for min in [a.min(b), b.min(c), c.min(a)] {
+                offsets[min as usize + 1] += 1;
+                parts_here |= 1 << (min >> shift);
+            }
+        }
+        parts.push(parts_here);
+    }
     for v in 0..vertex_count {
         offsets[v + 1] += offsets[v];
     }
-    Ok(offsets)
+    Ok((offsets, Blocks { shift, parts }))
 }
 
-/// Fills `half_edges` with those whose smaller vertices are `first` and those after it, of which `offsets` tell where
-/// each begins among all; gives where each group starts among all.
+/// Fills `half_edges` with those whose smaller vertices are in `part`, of which `offsets` tell where each begins among all; gives
+/// where each group starts among all.
 fn group_part(
     triangles: &[[u32; 3]],
-    first: u32,
+    blocks: &Blocks,
+    part: usize,
     offsets: &[u32],
     half_edges: &mut [u32],
     budget: &Budget,
 ) -> Result<Vec<u32>, Stopped> {
     let (begin, len) = (offsets[0], offsets.len() - 1);
+    let first = (part << blocks.shift) as u32;
+    // The larger vertex of each half-edge above its id.
+    let mut keys = vec![0u64; half_edges.len()];
     let mut cursor = offsets[..len].to_vec();
-    for_each_edge(triangles, first, len, budget, |h, min, _| {
-        half_edges[(cursor[min] - begin) as usize] = h;
-        cursor[min] += 1;
-    })?;
+    for (i, block) in triangles.chunks(BLOCK).enumerate() {
+        if i % (CHECK_EVERY / BLOCK) == 0 {
+            budget.check()?;
+        }
+        if blocks.parts[i] & 1 << part == 0 {
+            continue;
+        }
+        for (t, &[a, b, c]) in (i * BLOCK..).zip(block) {
+            for (k, (from, to)) in [(a, b), (b, c), (c, a)].into_iter().enumerate() {
+                let v = from.min(to).wrapping_sub(first) as usize;
+                if v < len {
+                    let key = u64::from(from.max(to)) << 32 | (3 * t + k) as u64;
+                    keys[(cursor[v] - begin) as usize] = key;
+                    cursor[v] += 1;
+                }
+            }
+        }
+    }
     let mut starts = Vec::with_capacity(half_edges.len() / 2 + 1);
-    let mut star = Vec::new();
     for (v, range) in offsets.windows(2).enumerate() {
         if v % CHECK_EVERY == 0 {
             budget.check()?;
         }
-        let of_vertex = &mut half_edges[(range[0] - begin) as usize..(range[1] - begin) as usize];
-        star.clear();
-        star.extend(of_vertex.iter().map(|&h| {
-            let [a, b] = edge_of(triangles, h);
-            (a.max(b), h)
-        }));
+        let of_vertex = (range[0] - begin) as usize..(range[1] - begin) as usize;
+        let star = &mut keys[of_vertex.clone()];
         star.sort_unstable();
         let mut last = None;
-        for ((place, at), &(max, h)) in of_vertex.iter_mut().zip(range[0]..).zip(&star) {
-            *place = h;
-            if last.replace(max) != Some(max) {
+        for ((place, at), &key) in half_edges[of_vertex].iter_mut().zip(range[0]..).zip(&*star) {
+            *place = key as u32;
+            if last.replace(key >> 32) != Some(key >> 32) {
                 starts.push(at);
             }
         }
     }
     Ok(starts)
-}
-
-fn for_each_edge(
-    triangles: &[[u32; 3]],
-    first: u32,
-    len: usize,
-    budget: &Budget,
-    mut visit: impl FnMut(u32, usize, u32),
-) -> Result<(), Stopped> {
-    for (block, corners) in triangles.chunks(CHECK_EVERY).enumerate() {
-        budget.check()?;
-        let base = (block * CHECK_EVERY) as u32;
-        for (i, &[a, b, c]) in corners.iter().enumerate() {
-            let h = (base + i as u32) * 3;
-            for (k, (from, to)) in [(a, b), (b, c), (c, a)].into_iter().enumerate() {
-                let min = from.min(to).wrapping_sub(first) as usize;
-                if min < len {
-                    visit(h + k as u32, min, from.max(to));
-                }
-            }
-        }
-    }
-    Ok(())
 }
 
 #[cfg(test)]

@@ -4,33 +4,30 @@
 /// member.
 #[derive(Debug, Clone)]
 pub struct ParityUnionFind {
-    parent: Vec<u32>,
-    /// True when a member is on the other side than its parent.
-    is_opposite: Vec<bool>,
+    /// For each member twice its parent, and 1 more when it is on the other side than that.
+    parents: Vec<u32>,
 }
 
 impl ParityUnionFind {
-    /// `len` sets of one member.
+    /// `len` sets of one member; fewer than 2^31.
     pub fn new(len: usize) -> Self {
-        Self { parent: (0..len as u32).collect(), is_opposite: vec![false; len] }
+        Self { parents: (0..len as u32).map(|x| 2 * x).collect() }
     }
 
     /// The smallest member of the set of `x`, and whether `x` is on the other side than that.
-    pub fn find(&mut self, x: u32) -> (u32, bool) {
-        let (mut root, mut is_opposite) = (x, false);
-        while self.parent[root as usize] != root {
-            is_opposite ^= self.is_opposite[root as usize];
-            root = self.parent[root as usize];
+    pub fn find(&mut self, mut x: u32) -> (u32, bool) {
+        let mut side = 0;
+        loop {
+            let parent = self.parents[x as usize];
+            if parent / 2 == x {
+                return (x, side == 1);
+            }
+            // Every other member on the way now hangs from the parent of its parent.
+            let grandparent = self.parents[parent as usize / 2] ^ (parent % 2);
+            self.parents[x as usize] = grandparent;
+            side ^= grandparent % 2;
+            x = grandparent / 2;
         }
-        // Every member on the way now hangs from the root, with what is left of the parity.
-        let (mut y, mut rest) = (x, is_opposite);
-        while y != root {
-            let parent = std::mem::replace(&mut self.parent[y as usize], root);
-            let step = std::mem::replace(&mut self.is_opposite[y as usize], rest);
-            rest ^= step;
-            y = parent;
-        }
-        (root, is_opposite)
     }
 
     /// Says that `a` and `b` are on opposite sides, or on the same one. False when that contradicts what was said
@@ -42,8 +39,7 @@ impl ParityUnionFind {
             return !parity;
         }
         let (child, parent) = (root_a.max(root_b), root_a.min(root_b));
-        self.parent[child as usize] = parent;
-        self.is_opposite[child as usize] = parity;
+        self.parents[child as usize] = 2 * parent + u32::from(parity);
         true
     }
 }

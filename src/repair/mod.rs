@@ -77,6 +77,8 @@ pub struct Effects {
     pub turned_triangles: u64,
     /// Vertices and edges in which the solid touched itself when that was bored last.
     pub bored_contacts: Option<u64>,
+    /// Pairs of triangles that still meet, where bodies were united just now.
+    pub meeting_pairs: u64,
 }
 
 impl Effects {
@@ -90,6 +92,7 @@ impl Effects {
         self.closed_chordal_gaps |= other.closed_chordal_gaps;
         self.turned_triangles += other.turned_triangles;
         self.bored_contacts = other.bored_contacts.or(self.bored_contacts);
+        self.meeting_pairs = other.meeting_pairs;
     }
 }
 

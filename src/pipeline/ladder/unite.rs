@@ -249,21 +249,24 @@ impl Climb<'_> {
                 let fill = NestOptions { policy: NestingPolicy::Fill, ..NestOptions::default() };
                 self.go_on(&mut attempt, &[Step::Nest(fill)])?;
             }
-            let judged = self.judge(&attempt)?;
-            if judged.fails_in_f32() {
-                if !self.choices.rounds || roundings == 0 {
-                    return Ok(Ok(Tried::SolidInF64));
+            // What is known to meet in float32 needs no judgement.
+            if !self.input.soup.is_f32_exact || attempt.effects.meeting_pairs == 0 {
+                let judged = self.judge(&attempt)?;
+                if judged.fails_in_f32() {
+                    if !self.choices.rounds || roundings == 0 {
+                        return Ok(Ok(Tried::SolidInF64));
+                    }
+                    roundings -= 1;
+                    self.go_on(&mut attempt, &[Step::RoundWhereItMatters, Step::Unite])?;
+                    continue;
                 }
-                roundings -= 1;
-                self.go_on(&mut attempt, &[Step::RoundWhereItMatters, Step::Unite])?;
-                continue;
-            }
-            match judged {
-                Judgement::Certified(candidate) => {
-                    return Ok(Ok(Tried::Certified(Box::new((attempt, *candidate)))));
+                match judged {
+                    Judgement::Certified(candidate) => {
+                        return Ok(Ok(Tried::Certified(Box::new((attempt, *candidate)))));
+                    }
+                    Judgement::Not(Refusal::NotRepairable { .. }) => {}
+                    Judgement::Not(_) => return Ok(Ok(Tried::Nothing)),
                 }
-                Judgement::Not(Refusal::NotRepairable { .. }) => {}
-                Judgement::Not(_) => return Ok(Ok(Tried::Nothing)),
             }
             let Some(steps) = tries.next() else { return Ok(Err(Box::new(attempt))) };
             self.go_on(&mut attempt, &steps)?;

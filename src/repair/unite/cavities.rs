@@ -23,6 +23,8 @@ pub(super) struct TurnedShells {
     pub(super) count: u64,
     /// All shells, where some are cavities.
     pub(super) with_cavities: Option<CavityShells>,
+    /// The hierarchy of all triangles, where it was built and holds.
+    pub(super) bvh: Option<Bvh>,
 }
 
 /// Turns the closed shells that point inward, unless they are cavities. A shell that is nowhere outside of the bodies around it is a
@@ -53,7 +55,7 @@ pub(super) fn turn_inverted(draft: &mut Draft, budget: &Budget) -> Result<Turned
         is_inverted[part] = volume_sign(corners, || budget.check())? == Sign::Negative;
     }
     if !is_inverted.contains(&true) {
-        return Ok(TurnedShells { count: 0, with_cavities: None });
+        return Ok(TurnedShells { count: 0, with_cavities: None, bvh: None });
     }
     let bvh = Bvh::build(&draft.positions, &draft.triangles, None, budget)?;
     let size = |part: usize| {
@@ -86,7 +88,7 @@ pub(super) fn turn_inverted(draft: &mut Draft, budget: &Budget) -> Result<Turned
     }
     turn(draft, &turned);
     let with_cavities = CavityShells::of_parts(parts.of, &is_closed, &cavities);
-    Ok(TurnedShells { count: turned.len() as u64, with_cavities })
+    Ok(TurnedShells { count: turned.len() as u64, with_cavities, bvh: turned.is_empty().then_some(bvh) })
 }
 
 /// What a shell is.

@@ -16,12 +16,14 @@ pub use combine::{NotCombined, NotSolid, SetOperation, combine};
 pub use enclose::{enclose, enclose_and_copy_bare};
 
 use self::cavities::{CavityShells, TurnedShells, turn_inverted};
-use super::{Changes, Draft, FIRST_BLEND, NEW};
+use super::{Changes, Draft, Effects, FIRST_BLEND, NEW};
 use crate::arrangement::{
     self, Arrangement, ArrangementError, ArrangementOptions, PlacedBoundary, SolidBoundary, arrange,
+    arrange_in,
 };
 use crate::budget::{Budget, Stopped};
 use crate::geom::{DVec3, print_pitch, triangle_area};
+use crate::spatial::Bvh;
 
 /// Most pairs of triangles that may meet, for each triangle of the draft, and the least that a draft of any size may have.
 const PAIRS_PER_TRIANGLE: usize = 128;
@@ -127,8 +129,8 @@ impl Coverage {
 /// # Errors
 /// When the budget stops the run.
 pub fn unite(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
-    let TurnedShells { count, with_cavities } = turn_inverted(draft, budget)?;
-    let united = unite_shells(draft, with_cavities.as_ref(), budget)?;
+    let TurnedShells { count, with_cavities, bvh } = turn_inverted(draft, budget)?;
+    let united = unite_shells(draft, with_cavities.as_ref(), bvh, budget)?;
     let counts = [("shells_turned", count)].into_iter().chain(united.counts).collect();
     Ok(Changes { counts, ..united })
 }
@@ -138,16 +140,19 @@ pub fn unite(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
 /// # Errors
 /// When the budget stops the run.
 pub fn unite_as_oriented(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
-    unite_shells(draft, None, budget)
+    unite_shells(draft, None, None, budget)
 }
 
-/// As [`unite_as_oriented`]; `shells` tell what is a cavity.
+/// As [`unite_as_oriented`]; `shells` tell what is a cavity, and the hierarchy of the triangles may be `known`.
 fn unite_shells(
     draft: &mut Draft,
     shells: Option<&CavityShells>,
+    known: Option<Bvh>,
     budget: &Budget,
 ) -> Result<Changes, Stopped> {
-    let united = arranged(draft, budget).and_then(|arrangement| {
+    let options = arrangement_options(draft, 1);
+    let arranged = arrange_in(known, &draft.positions, &draft.triangles, |_| 0, &options, budget);
+    let united = arranged.and_then(|arrangement| {
         let boundary = arrangement.boundary(|winding| winding[0] > 0);
         let coverage = Coverage::of(draft, &arrangement, shells);
         become_covered(draft, &arrangement, boundary, coverage, budget)
@@ -253,7 +258,8 @@ fn replace(draft: &mut Draft, placed: PlacedBoundary) -> Changes {
     draft.drop_unused_vertices();
     let after = draft.triangles.len() as u64;
     let counts = [("triangles_before", before), ("triangles_after", after), ("vertices_added", new)];
-    Changes { move_max, reason, ..Changes::counted(counts) }
+    let effects = Effects { meeting_pairs: placed.conflicts, ..Effects::default() };
+    Changes { move_max, reason, effects, ..Changes::counted(counts) }
 }
 
 /// What is told of a draft that is left as it is because there is no arrangement.
