@@ -9,7 +9,7 @@ use super::shells::OrientedShell;
 use super::{Context, DefectCode, Finding, Witness, double_skins};
 use crate::budget::{CHECK_EVERY, Stopped};
 use crate::geom::Sign;
-use crate::spatial::{Bvh, NO_SHELL, nest};
+use crate::spatial::{NO_SHELL, nest};
 
 pub(super) fn find(cx: &Context<'_>) -> Result<Vec<Finding>, Stopped> {
     let Ways { inverted, misnested, nested } = ways(cx)?;
@@ -118,11 +118,7 @@ fn parents(cx: &Context<'_>, free: &[OrientedShell]) -> Result<Vec<Option<u32>>,
         cx.members.part(free.part).iter().for_each(|&t| shell_of[t as usize] = shell);
     }
     cx.budget.check()?;
-    let mut members = Vec::with_capacity(triangles.len());
-    members.extend((0..).zip(&shell_of).filter(|&(_, &shell)| shell != NO_SHELL).map(|(t, _)| t));
-    let bvh = Bvh::build(positions, triangles, Some(&members), cx.budget)?;
-    drop(members);
-    Ok(nest(positions, triangles, &shell_of, free.len() as u32, &bvh, cx.budget)?.parent)
+    Ok(nest(positions, triangles, &shell_of, free.len() as u32, None, cx.budget)?.parent)
 }
 
 #[cfg(test)]

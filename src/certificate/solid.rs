@@ -23,7 +23,7 @@ impl<'a> EmbeddedShells<'a> {
             budget.charge(surface.triangles.len() as u64 * 8 + surface.positions.len() as u64 * 8)?;
         let (shell_of, vertices) = shells(surface, budget)?;
         let count = vertices.len() as u32;
-        let nesting = nest(&surface.positions, &surface.triangles, &shell_of, count, bvh, budget)?;
+        let nesting = nest(&surface.positions, &surface.triangles, &shell_of, count, Some(bvh), budget)?;
         let shells = ShellTriangles::group(&shell_of, count, budget)?;
         Ok(Self { shells, nesting, vertices, _charge: charge })
     }

@@ -60,7 +60,7 @@ pub(super) fn parts(
     let mut is_cavity = vec![false; parts.len()];
     if is_solid {
         let nesting =
-            nest(surface.positions, &surface.triangles, &components.of, components.count, bvh, budget)?;
+            nest(surface.positions, &surface.triangles, &components.of, components.count, Some(bvh), budget)?;
         for (is_cavity, depth) in is_cavity.iter_mut().zip(&nesting.depth) {
             *is_cavity = depth % 2 == 1;
         }

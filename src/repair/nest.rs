@@ -71,7 +71,8 @@ pub fn nest(draft: &mut Draft, options: &NestOptions, budget: &Budget) -> Result
     if !is_embedded {
         return Ok(left_alone("triangles pass through each other or touch"));
     }
-    let nesting = spatial::nest(&draft.positions, &draft.triangles, &shells.of, shells.count, &bvh, budget)?;
+    let nesting =
+        spatial::nest(&draft.positions, &draft.triangles, &shells.of, shells.count, Some(&bvh), budget)?;
     let mut fates = match options.policy {
         NestingPolicy::AsOriented => decide(&nesting, &two_sided_shells(draft, &shells)),
         NestingPolicy::Alternate | NestingPolicy::Fill => by_place(&nesting, options.policy),

@@ -20,7 +20,8 @@ pub struct ShellNesting {
 }
 
 /// Nests `shell_count` shells; `shell_of[t]` is the shell of triangle `t`, or [`NO_SHELL`]. Every shell must have a
-/// triangle and be closed, oriented and embedded, and no two may meet. `bvh` must hold all their triangles.
+/// triangle and be closed, oriented and embedded, and no two may meet. A `bvh` must hold all their triangles; without one,
+/// those that the rays may meet are looked for, which takes a tenth of what a hierarchy does.
 ///
 /// One vertical ray for each shell, from its highest vertex: the shells that it crosses an odd number of times are those
 /// around it. They form a chain in which each has a larger reach than the ones inside, so that the one with the least
@@ -33,7 +34,7 @@ pub fn nest(
     triangles: &[[u32; 3]],
     shell_of: &[u32],
     shell_count: u32,
-    bvh: &Bvh,
+    bvh: Option<&Bvh>,
     budget: &Budget,
 ) -> Result<ShellNesting, Stopped> {
     let members = ShellTriangles::group(shell_of, shell_count, budget)?;
@@ -46,11 +47,20 @@ pub fn nest(
             ..ShellExtent::of(own.iter().map(|&t| corners(t)), budget)?
         })
     })?;
+    let built = match bvh {
+        None if shell_count > 1 => {
+            let tops = shells.iter().map(|shell| shell.top).collect();
+            let above = triangles_above(tops, positions, triangles, shell_of, budget)?;
+            Some(Bvh::build(positions, triangles, Some(&above), budget)?)
+        }
+        _ => None,
+    };
+    let bvh = bvh.or(built.as_ref());
     let nested = par::try_map_ranges(shell_count as usize, 1, |range| {
         let shell = range.start;
         let top = shells[shell].top;
         let mut crossed = Vec::new();
-        if shell_count > 1 {
+        if let Some(bvh) = bvh.filter(|_| shell_count > 1) {
             bvh.visit_upward_ray(top, budget, |t| {
                 let other = shell_of[t as usize];
                 let may_contain =
@@ -67,6 +77,33 @@ pub fn nest(
         parent: nested.iter().map(|&(parent, _)| parent).collect(),
         depth: nested.iter().map(|&(_, depth)| depth).collect(),
     })
+}
+
+/// Tops that are looked at for a triangle, before it is taken to be above one.
+const TOPS_MAX: usize = 32;
+
+/// The triangles of shells that upward rays from `tops` may meet, ascending; a few more may be in.
+fn triangles_above(
+    mut tops: Vec<DVec3>,
+    positions: &[DVec3],
+    triangles: &[[u32; 3]],
+    shell_of: &[u32],
+    budget: &Budget,
+) -> Result<Vec<u32>, Stopped> {
+    tops.sort_unstable_by(|a, b| a.x.total_cmp(&b.x));
+    let is_above_one = |bounds: Aabb| {
+        let first = tops.partition_point(|top| top.x < bounds.min.x);
+        let beside = tops[first..].iter().take_while(|top| top.x <= bounds.max.x);
+        let is_below = |top: &DVec3| top.y >= bounds.min.y && top.y <= bounds.max.y && top.z <= bounds.max.z;
+        beside.enumerate().any(|(looked_at, top)| looked_at == TOPS_MAX || is_below(top))
+    };
+    let parts = par::try_map_ranges(triangles.len(), CHECK_EVERY, |range| {
+        budget.spend(range.len() as u64)?;
+        let of_shell = range.filter(|&t| shell_of[t] != NO_SHELL);
+        let above = of_shell.filter(|&t| is_above_one(Aabb::of(triangles[t].map(|v| positions[v as usize]))));
+        Ok(above.map(|t| t as u32).collect::<Vec<_>>())
+    })?;
+    Ok(parts.concat())
 }
 
 /// The innermost of the shells crossed an odd number of times, and how many those are.

@@ -63,7 +63,10 @@ fn nesting_of(soups: &[RawSoup]) -> ShellNesting {
     }
     let budget = Budget::unlimited();
     let bvh = Bvh::build(&positions, &triangles, None, &budget).unwrap();
-    nest(&positions, &triangles, &shell_of, soups.len() as u32, &bvh, &budget).unwrap()
+    let [nested, without_tree] = [Some(&bvh), None]
+        .map(|bvh| nest(&positions, &triangles, &shell_of, soups.len() as u32, bvh, &budget).unwrap());
+    assert_eq!(nested, without_tree);
+    nested
 }
 
 /// A box as a shell, in half of the cases inside out.

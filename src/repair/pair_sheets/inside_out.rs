@@ -3,7 +3,7 @@
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::mesh::{Components, EdgeGroups, UnionFind, edge_of, triangle_of};
 use crate::repair::Draft;
-use crate::spatial::{self, Bvh, NO_SHELL};
+use crate::spatial::{self, NO_SHELL};
 
 /// Turns the bodies whose outermost one points inward, with everything that is in them; gives the number of triangles.
 ///
@@ -24,8 +24,7 @@ pub(super) fn turn(draft: &mut Draft, budget: &Budget) -> Result<u64, Stopped> {
         return Ok(0);
     }
     let shell_of: Vec<u32> = bodies.of.iter().map(|&body| shell[body as usize]).collect();
-    let bvh = Bvh::build(&draft.positions, &draft.triangles, None, budget)?;
-    let nesting = spatial::nest(&draft.positions, &draft.triangles, &shell_of, count, &bvh, budget)?;
+    let nesting = spatial::nest(&draft.positions, &draft.triangles, &shell_of, count, None, budget)?;
     let is_root_outward = |mut s: u32| {
         // No longer than the shells are deep.
         for _ in 0..nesting.depth[s as usize] {

@@ -3,7 +3,8 @@
 
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, DVec3, Sign, upward_crossing, volume_sign};
-use crate::mesh::{EdgeGroups, edge_of};
+use crate::mesh::{EdgeGroups, edge_of, triangle_of};
+use crate::par;
 use crate::repair::Draft;
 use crate::spatial::{Bvh, ShellTriangles};
 
@@ -33,19 +34,11 @@ pub(super) struct TurnedShells {
 /// connected by edges, so that bodies that share an edge count as one.
 pub(super) fn turn_inverted(draft: &mut Draft, budget: &Budget) -> Result<TurnedShells, Stopped> {
     let groups = EdgeGroups::build(&draft.triangles, draft.positions.len(), budget)?;
-    let parts = groups.components(budget)?;
+    let (parts, open) = par::join(|| groups.components(budget), || open_edges(draft, &groups, budget));
+    let parts = parts?;
     let mut is_closed = vec![true; parts.count as usize];
-    for (e, group) in groups.iter().enumerate() {
-        if e % CHECK_EVERY == 0 {
-            budget.spend(CHECK_EVERY as u64)?;
-        }
-        let forward = |&&h: &&u32| {
-            let [from, to] = edge_of(&draft.triangles, h);
-            from < to
-        };
-        if 2 * group.iter().filter(forward).count() != group.len() {
-            is_closed[parts.of[(group[0] / 3) as usize] as usize] = false;
-        }
+    for t in open? {
+        is_closed[parts.of[t as usize] as usize] = false;
     }
     drop(groups);
     let members = ShellTriangles::group(&parts.of, parts.count, budget)?;
@@ -89,6 +82,21 @@ pub(super) fn turn_inverted(draft: &mut Draft, budget: &Budget) -> Result<Turned
     turn(draft, &turned);
     let with_cavities = CavityShells::of_parts(parts.of, &is_closed, &cavities);
     Ok(TurnedShells { count: turned.len() as u64, with_cavities, bvh: turned.is_empty().then_some(bvh) })
+}
+
+/// A triangle at each edge along which not as many triangles run one way as the other.
+fn open_edges(draft: &Draft, groups: &EdgeGroups, budget: &Budget) -> Result<Vec<u32>, Stopped> {
+    let is_forward = |&&h: &&u32| {
+        let [from, to] = edge_of(&draft.triangles, h);
+        from < to
+    };
+    let parts = par::try_map_ranges(groups.len(), CHECK_EVERY, |range| {
+        budget.spend(range.len() as u64)?;
+        let is_open = |group: &&[u32]| 2 * group.iter().filter(is_forward).count() != group.len();
+        let open = range.map(|e| groups.group(e)).filter(is_open).map(|group| triangle_of(group[0]));
+        Ok(open.collect::<Vec<_>>())
+    })?;
+    Ok(parts.concat())
 }
 
 /// What a shell is.

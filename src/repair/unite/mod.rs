@@ -23,6 +23,7 @@ use crate::arrangement::{
 };
 use crate::budget::{Budget, Stopped};
 use crate::geom::{DVec3, print_pitch, triangle_area};
+use crate::par;
 use crate::spatial::Bvh;
 
 /// Most pairs of triangles that may meet, for each triangle of the draft, and the least that a draft of any size may have.
@@ -154,8 +155,7 @@ fn unite_shells(
     let arranged = arrange_in(known, &draft.positions, &draft.triangles, |_| 0, &options, budget);
     let united = arranged.and_then(|arrangement| {
         let boundary = arrangement.boundary(|winding| winding[0] > 0);
-        let coverage = Coverage::of(draft, &arrangement, shells);
-        become_covered(draft, &arrangement, boundary, coverage, budget)
+        become_covered(draft, &arrangement, boundary, shells, budget)
     });
     united.or_else(left_alone)
 }
@@ -167,19 +167,20 @@ fn become_solid(
     boundary: SolidBoundary,
     budget: &Budget,
 ) -> Result<Changes, ArrangementError> {
-    let coverage = Coverage::of(draft, arrangement, None);
-    become_covered(draft, arrangement, boundary, coverage, budget)
+    become_covered(draft, arrangement, boundary, None, budget)
 }
 
-/// As [`become_solid`], where it is known what becomes of the triangles.
+/// As [`become_solid`]; `shells` tell what is a cavity.
 fn become_covered(
     draft: &mut Draft,
     arrangement: &Arrangement,
     boundary: SolidBoundary,
-    coverage: Coverage,
+    shells: Option<&CavityShells>,
     budget: &Budget,
 ) -> Result<Changes, ArrangementError> {
-    Ok(match placed(draft, arrangement, boundary, budget)? {
+    let covered = || Coverage::of(draft, arrangement, shells);
+    let (coverage, placed) = par::join(covered, || placed(draft, arrangement, boundary, budget));
+    Ok(match placed? {
         Some(placed) => {
             let mut changes = replace(draft, placed);
             if coverage.mouths > 0 {

@@ -95,7 +95,7 @@ impl ClosedShells {
                 }
             };
             let Some(bvh) = built.as_ref().or_else(|| check.first_bvh(r)) else { continue };
-            let now = nest(positions, &triangles, &shell_of, components.len() as u32, bvh, budget)?;
+            let now = nest(positions, &triangles, &shell_of, components.len() as u32, Some(bvh), budget)?;
             moved.extend(differences(before, &now, &components));
         }
         self.reference = Some(reference);
@@ -124,7 +124,7 @@ impl ClosedShells {
                 Vec::new()
             };
             let bvh = Bvh::build(positions, input.triangles, Some(&ids), budget)?;
-            nest(positions, input.triangles, &shell_of, components.len() as u32, &bvh, budget)
+            nest(positions, input.triangles, &shell_of, components.len() as u32, Some(&bvh), budget)
         };
         roundings.iter().map(lie).collect()
     }
