@@ -38,6 +38,7 @@ pub(super) fn wind(
     })?;
     drop(bvh);
     // Along an edge of two pieces the jumps cancel out: all pieces of a wall have one, but for the way they turn.
+    let _walls_charge = budget.charge((walls.count() * 12 * operands) as u64)?;
     let mut spreading = Spreading {
         jumps: walls.first_pieces().iter().flat_map(|&f| jumps_of(f, &jumps, operands)).copied().collect(),
         windings: vec![UNKNOWN; 2 * walls.count() * operands],

@@ -27,6 +27,7 @@ pub(super) fn enclose(
     let _charge = budget.charge((count * 8) as u64)?;
     let groups = EdgeGroups::build(&arrangement.pieces, arrangement.point_count(), budget)?;
     let walls = Walls::find(arrangement, triangles, &groups, budget)?;
+    let _walls_charge = budget.charge((walls.count() * 8) as u64)?;
     let mut of_walls = vec![1; 2 * walls.count()];
     let mut outside = Vec::new();
     for top in tops(arrangement, &groups, budget)? {

@@ -73,6 +73,7 @@ impl<'b> Walls<'b> {
             };
         }
         drop(parities);
+        let _joins_charge = budget.charge(joins.len() as u64 * 32)?;
         let side = |side: PieceSide| fronts[side as usize / 2] ^ (side % 2);
         let pairs = par::try_map_ranges(joins.len(), 256, |range| {
             let mut pairs = Vec::new();

@@ -116,3 +116,41 @@ fn sound(positions: &[DVec3], triangles: &[[u32; 3]], budget: &Budget) -> Result
     })?;
     Ok(parts.concat())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeMap;
+
+    #[test]
+    fn copies_of_sound_triangles_are_those_with_the_same_corners() {
+        let mut state = 11u32;
+        let mut random = |below: u32| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) % below
+        };
+        // The first three are on a line, the last two at one place.
+        let mut positions: Vec<DVec3> =
+            (0..8).map(|i| DVec3::new(f64::from(i), f64::from(i / 3), 0.0)).collect();
+        positions[7] = positions[6];
+        let mut copies = 0;
+        for round in 0..2_000 {
+            let given: Vec<[u32; 3]> = (0..random(24)).map(|_| std::array::from_fn(|_| random(8))).collect();
+            let budget = Budget::unlimited();
+            let welded = Welded::of(&positions, &given, &budget).unwrap();
+            let mut expected: BTreeMap<[u32; 3], Vec<u32>> = BTreeMap::new();
+            for &t in &welded.sound {
+                let mut corners = given[t as usize].map(|v| v.min(6));
+                corners.sort_unstable();
+                expected.entry(corners).or_default().push(t);
+            }
+            let pairs_of = |same: &Vec<u32>| same[1..].iter().map(|&t| [same[0], t]).collect::<Vec<_>>();
+            let expected: Vec<[u32; 2]> = expected.values().flat_map(pairs_of).collect();
+            let (found, _) = welded.copies(&budget).unwrap();
+            let found: Vec<[u32; 2]> = found.iter().map(|pair| pair.triangles).collect();
+            assert_eq!(found, expected, "round {round}: {given:?}");
+            copies += found.len();
+        }
+        assert!(copies > 1_000, "{copies}");
+    }
+}

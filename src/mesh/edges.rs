@@ -20,6 +20,8 @@ pub struct EdgeGroups {
 
 /// Most parts of the vertex range, which are grouped at the same time.
 const PARTS_MAX: usize = 16;
+/// Parts whose keys are charged, the longest: more threads than this are rare.
+const PARTS_AT_A_TIME: usize = 4;
 /// Triangles in a block, of which it is known which parts their edges are of.
 const BLOCK: usize = 64;
 
@@ -34,8 +36,8 @@ impl EdgeGroups {
     /// With 2^32 / 3 triangles or more; the readers' limits keep counts below.
     pub fn build(triangles: &[[u32; 3]], vertex_count: usize, budget: &Budget) -> Result<Self, Stopped> {
         assert!(triangles.len() < (u32::MAX / 3) as usize, "too many triangles for 32-bit half-edges");
-        // Half-edges, group starts of the parts and of all, where each vertex begins, twice, and the keys of two parts.
-        let _charge = budget.charge(triangles.len() as u64 * 3 * 9 + vertex_count as u64 * 8)?;
+        // Half-edges, group starts of the parts and of all, and where each vertex begins, twice.
+        let _charge = budget.charge(triangles.len() as u64 * 3 * 8 + vertex_count as u64 * 8)?;
         let (offsets, blocks) = offsets_by_smaller_vertex(triangles, vertex_count, budget)?;
         let mut half_edges = vec![0u32; triangles.len() * 3];
         let mut parts = Vec::with_capacity(PARTS_MAX);
@@ -46,6 +48,9 @@ impl EdgeGroups {
             parts.push((offsets, part));
             rest = others;
         }
+        let mut lengths: Vec<u64> = parts.iter().map(|(_, part)| part.len() as u64).collect();
+        lengths.sort_unstable_by_key(|&len| std::cmp::Reverse(len));
+        let _keys_charge = budget.charge(8 * lengths.iter().take(PARTS_AT_A_TIME).sum::<u64>())?;
         let starts_of_parts = par::map_items(parts, |part, (offsets, half_edges)| {
             group_part(triangles, &blocks, part, offsets, half_edges, budget)
         });
@@ -269,9 +274,15 @@ mod tests {
             (state >> 8) % below
         };
         for round in 0..500 {
-            let vertex_count = 1 + random(30);
-            let triangles: Vec<[u32; 3]> =
-                (0..random(60)).map(|_| std::array::from_fn(|_| random(vertex_count))).collect();
+            // Several blocks of triangles in each fourth round, whose vertices are all over the range or near each other.
+            let (vertex_count, count) = match round % 4 {
+                0 => (1 + random(600), 64 + random(300)),
+                _ => (1 + random(30), random(60)),
+            };
+            let window = if round % 8 == 0 { 8 } else { vertex_count };
+            let triangles: Vec<[u32; 3]> = (0..count)
+                .map(|t| std::array::from_fn(|_| (t * vertex_count / count + random(window)) % vertex_count))
+                .collect();
             let groups = EdgeGroups::build(&triangles, vertex_count as usize, &Budget::unlimited()).unwrap();
             let listed: Vec<Vec<u32>> = groups.iter().map(<[u32]>::to_vec).collect();
             assert_eq!(listed, by_map(&triangles), "round {round}: {triangles:?}");

@@ -171,6 +171,36 @@ fn what_random_solids_enclose_is_their_union_whichever_way_their_triangles_turn(
 }
 
 #[test]
+fn a_strip_with_one_side_encloses_nothing_and_may_stand_in_a_body() {
+    // Half a turn around a circle: the two sides of each piece look into one cell.
+    let steps = 12;
+    let point = |i: usize, end: f64| {
+        let angle = std::f64::consts::TAU * (i % steps) as f64 / steps as f64;
+        let end = if i >= steps { -end } else { end };
+        let (out, up) = (4.0 + end * (angle / 2.0).cos(), end * (angle / 2.0).sin());
+        DVec3::new(out * angle.cos(), out * angle.sin(), up)
+    };
+    let corner = |i: usize, end: f64| [point(i, end), point(i, -end), point(i + 1, end), point(i + 1, -end)];
+    let squares: Vec<[DVec3; 4]> = (0..steps).map(|i| corner(i, 1.0)).collect();
+    let positions: Vec<DVec3> = squares.iter().flatten().copied().collect();
+    let halves = |i: u32| [[4 * i, 4 * i + 1, 4 * i + 2], [4 * i + 3, 4 * i + 2, 4 * i + 1]];
+    let strip: Vec<[u32; 3]> = (0..steps as u32).flat_map(halves).collect();
+    let (options, budget) = (ArrangementOptions::default(), Budget::unlimited());
+    let alone = arrange_enclosed(&positions, &strip, &options, &budget).unwrap();
+    assert_eq!(alone.pieces().len(), strip.len());
+    assert!(alone.windings.iter().all(|&winding| winding == 0));
+    // Through the wall of a cube that part of it is in.
+    let mut bodies = Bodies::default();
+    bodies.add(cube([2, -2, -3], [7, 2, 3], 0), 0);
+    let first = bodies.positions.len() as u32;
+    let positions = [bodies.positions, positions].concat();
+    let triangles =
+        [bodies.triangles, strip.iter().map(|corners| corners.map(|v| v + first)).collect()].concat();
+    let both = arrange_enclosed(&positions, &triangles, &options, &budget).unwrap();
+    assert_eq!(oracle::volume_sixfold(&both, |w| w[0] > 0), oracle::whole(6 * 5 * 4 * 6));
+}
+
+#[test]
 fn thirty_sheets_through_one_line_are_ordered_around_it() {
     let mut random = Random::new(7);
     for round in 0..3 {

@@ -3,7 +3,7 @@
 use super::climb::{Certified, Climb, Judgement, Openness, RungResult, Situation};
 use super::{Rung, RungKind};
 use crate::analysis::DefectCode;
-use crate::geom::print_pitch;
+use crate::geom::{DVec3, print_pitch};
 use crate::pipeline::output::Candidate;
 use crate::pipeline::plan::{Attempt, Uniting, Variant};
 use crate::pipeline::repair_choices::Walls;
@@ -249,8 +249,8 @@ impl Climb<'_> {
                 let fill = NestOptions { policy: NestingPolicy::Fill, ..NestOptions::default() };
                 self.go_on(&mut attempt, &[Step::Nest(fill)])?;
             }
-            // What is known to meet in float32 needs no judgement.
-            if !self.input.soup.is_f32_exact || attempt.effects.meeting_pairs == 0 {
+            // What is known to meet, and is float32 already, needs no judgement.
+            if attempt.effects.meeting_pairs == 0 || !is_float32(&attempt.draft.positions) {
                 let judged = self.judge(&attempt)?;
                 if judged.fails_in_f32() {
                     if !self.choices.rounds || roundings == 0 {
@@ -272,4 +272,9 @@ impl Climb<'_> {
             self.go_on(&mut attempt, &steps)?;
         }
     }
+}
+
+/// Whether no coordinate is rounded where all are written as float32.
+fn is_float32(positions: &[DVec3]) -> bool {
+    positions.iter().all(|p| p.as_vec3().as_dvec3() == *p)
 }
