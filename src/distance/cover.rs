@@ -73,7 +73,7 @@ impl<'s> Cloth<'s> {
                 return (None, signs.len() as u64);
             }
             for h in [3 * t, 3 * t + 1, 3 * t + 2] {
-                let ends = [h % 3, next_corner(h) % 3].map(|c| seen[c as usize].0);
+                let ends = [h % 3, next_corner(h) % 3].map(|c| seen[c as usize]);
                 if walk.view.misses(ends) {
                     continue;
                 }
@@ -108,6 +108,8 @@ struct PieceFrame {
     height: DVec3,
     /// The piece, shrunk, counter-clockwise.
     corners: [DVec2; 3],
+    /// Lengths of its sides.
+    sides: [f64; 3],
     area: f64,
     longest: f64,
     /// The share by which it was shrunk.
@@ -137,15 +139,16 @@ impl PieceFrame {
             return None;
         }
         let corners = corners.map(|corner| corner + (middle - corner) * shrink);
+        let sides = [0, 1, 2].map(|k| corners[k].distance(corners[(k + 1) % 3]));
         let area = area * (1.0 - shrink) * (1.0 - shrink);
         let height = normal / along.dot(normal);
-        Some(Self { origin: a, across: turned, height, corners, area, longest, shrink, slack })
+        Some(Self { origin: a, across: turned, height, corners, sides, area, longest, shrink, slack })
     }
 
-    /// Where a point is seen, and how far it is from the piece along the direction.
-    fn seen(&self, p: DVec3) -> (DVec2, f64) {
+    fn seen(&self, p: DVec3) -> SeenCorner {
         let from = p - self.origin;
-        (DVec2::new(from.dot(self.across[0]), from.dot(self.across[1])), from.dot(self.height))
+        let at = DVec2::new(from.dot(self.across[0]), from.dot(self.across[1]));
+        SeenCorner { at, reach: at.length(), height: from.dot(self.height) }
     }
 
     /// How far inside of side `k` a place is seen, in relation to the length of the side.
@@ -155,19 +158,78 @@ impl PieceFrame {
     }
 
     /// Whether an edge is certainly seen outside of the piece.
-    fn misses(&self, [u, v]: [DVec2; 2]) -> bool {
-        let reach = self.longest + u.length().max(v.length());
-        let rounding = self.slack + f64::EPSILON * 8.0 * reach;
-        let is_beyond = |k: usize| {
-            let side = self.corners[k].distance(self.corners[(k + 1) % 3]);
-            self.inside(k, u).max(self.inside(k, v)) < -rounding * side
-        };
+    fn misses(&self, [u, v]: [SeenCorner; 2]) -> bool {
+        let rounding = self.slack + f64::EPSILON * 8.0 * (self.longest + u.reach.max(v.reach));
+        let (u, v) = (u.at, v.at);
+        let is_beyond = |k: usize| self.inside(k, u).max(self.inside(k, v)) < -rounding * self.sides[k];
+        if (0..3).any(is_beyond) {
+            return true;
+        }
         let along = v - u;
         let turns = self.corners.map(|corner| along.perp_dot(corner - u));
         let least = rounding * along.length();
-        (0..3).any(is_beyond)
-            || turns.iter().all(|&turn| turn > least)
-            || turns.iter().all(|&turn| turn < -least)
+        turns.iter().all(|&turn| turn > least) || turns.iter().all(|&turn| turn < -least)
+    }
+}
+
+/// A corner of a walked triangle as it is seen along the direction.
+#[derive(Clone, Copy)]
+struct SeenCorner {
+    at: DVec2,
+    /// Its distance from the origin of the piece, as it is seen.
+    reach: f64,
+    /// How far it is from the piece along the direction.
+    height: f64,
+}
+
+/// Corners that a triangle may have once it is cut at three lines, also where rounding makes what is cut not convex: of `n`
+/// corners at most every second one is cut off by itself, which makes two of it.
+const PART_CORNERS_MAX: usize = 9;
+
+/// Part of a walked triangle: where its corners are seen, and how far they are from the piece.
+struct CutPart {
+    corners: [(DVec2, f64); PART_CORNERS_MAX],
+    len: usize,
+}
+
+impl CutPart {
+    const EMPTY: Self = Self { corners: [(DVec2::ZERO, 0.0); PART_CORNERS_MAX], len: 0 };
+
+    fn of(corners: [SeenCorner; 3]) -> Self {
+        let mut part = Self::EMPTY;
+        corners.iter().for_each(|corner| part.push((corner.at, corner.height)));
+        part
+    }
+
+    fn push(&mut self, corner: (DVec2, f64)) {
+        self.corners[self.len] = corner;
+        self.len += 1;
+    }
+
+    fn corners(&self) -> &[(DVec2, f64)] {
+        &self.corners[..self.len]
+    }
+
+    /// What of it is where `inside` is not negative (Sutherland and Hodgman 1974).
+    fn cut(self, inside: impl Fn(DVec2) -> f64) -> Self {
+        let depth_of = |&(place, _): &(DVec2, f64)| inside(place);
+        if self.corners().iter().all(|corner| depth_of(corner) >= 0.0) {
+            return self;
+        }
+        let mut cut = Self::EMPTY;
+        let Some(mut from) = self.corners().last().map(|last| (*last, depth_of(last))) else { return cut };
+        for &to in self.corners() {
+            let (inside_from, inside_to) = (from.1, depth_of(&to));
+            if (inside_from < 0.0) != (inside_to < 0.0) {
+                let (from, share) = (from.0, inside_from / (inside_from - inside_to));
+                cut.push((from.0 + (to.0 - from.0) * share, from.1 + (to.1 - from.1) * share));
+            }
+            if inside_to >= 0.0 {
+                cut.push(to);
+            }
+            from = (to, inside_to);
+        }
+        cut
     }
 }
 
@@ -183,29 +245,16 @@ struct CoverWalk {
 }
 
 impl CoverWalk {
-    /// Adds what a triangle covers: the part of it that is seen in the piece (Sutherland and Hodgman 1974).
-    fn cover(&mut self, corners: [(DVec2, f64); 3], sign: f64) {
-        let reach = corners.iter().map(|(p, _)| p.length()).fold(self.view.longest, f64::max);
-        let mut part: Vec<(DVec2, f64)> = corners.to_vec();
-        for k in 0..3 {
-            let mut cut = Vec::with_capacity(part.len() + 1);
-            for (i, &to) in part.iter().enumerate() {
-                let from = part[(i + part.len() - 1) % part.len()];
-                let (inside_from, inside_to) = (self.view.inside(k, from.0), self.view.inside(k, to.0));
-                if (inside_from < 0.0) != (inside_to < 0.0) {
-                    let share = inside_from / (inside_from - inside_to);
-                    cut.push((from.0 + (to.0 - from.0) * share, from.1 + (to.1 - from.1) * share));
-                }
-                if inside_to >= 0.0 {
-                    cut.push(to);
-                }
-            }
-            part = cut;
-        }
+    /// Adds what a triangle covers: the part of it that is seen in the piece.
+    fn cover(&mut self, corners: [SeenCorner; 3], sign: f64) {
+        let view = &self.view;
+        let reach = corners.iter().map(|corner| corner.reach).fold(view.longest, f64::max);
+        let part = (0..3).fold(CutPart::of(corners), |part, k| part.cut(|p| view.inside(k, p)));
+        let part = part.corners();
         let Some(&(first, _)) = part.first() else { return };
         let doubled: f64 = part.windows(2).map(|pair| (pair[0].0 - first).perp_dot(pair[1].0 - first)).sum();
         self.covered += sign * doubled / 2.0;
-        self.rounding += (self.view.slack + 32.0 * f64::EPSILON * reach) * self.view.longest;
+        self.rounding += (view.slack + 32.0 * f64::EPSILON * reach) * view.longest;
         self.farthest = part.iter().map(|&(_, height)| height.abs()).fold(self.farthest, f64::max);
     }
 

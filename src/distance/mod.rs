@@ -49,6 +49,8 @@ pub struct DistanceOptions {
     pub refinements_max: u64,
     /// Units of work for them, for each direction; the wave of refinements in which they are used up is the last.
     pub refining_work_max: u64,
+    /// What is farther than this from the second surface is lost, in the unit of the coordinates; `None`: that is not told.
+    pub lost_beyond: Option<f64>,
 }
 
 impl Default for DistanceOptions {
@@ -59,6 +61,7 @@ impl Default for DistanceOptions {
             samples: 1 << 17,
             refinements_max: 1 << 26,
             refining_work_max: u64::MAX,
+            lost_beyond: None,
         }
     }
 }
@@ -68,16 +71,10 @@ impl Default for DistanceOptions {
 pub type VisibilitySearch<'v> =
     Box<dyn FnMut(&mut dyn Iterator<Item = DVec3>, u32) -> Result<Option<DVec3>, Stopped> + 'v>;
 
-/// What of a surface counts. The distance is then that of the places that can be seen: of a piece of a triangle that is
-/// farther than others some places are asked about, and it counts unless all are hidden.
-#[derive(Clone, Copy)]
-pub struct VisibilityFilter<'v> {
-    /// Makes a look at places on triangles of the first surface, whose answers do not depend on earlier ones; `None`: all of it
-    /// can be seen.
-    pub look: Option<&'v (dyn Fn() -> VisibilitySearch<'v> + Sync)>,
-    /// What can be seen and is farther than this from the second surface is lost, in the unit of the coordinates.
-    pub lost_beyond: f64,
-}
+/// Makes a look at places on triangles of the first surface, whose answers do not depend on earlier ones. The distance is then
+/// that of the places that can be seen: of a piece of a triangle that is farther than others some places are asked about, and
+/// it counts unless all are hidden.
+pub type Look<'v> = &'v (dyn Fn() -> VisibilitySearch<'v> + Sync);
 
 /// Shares of the area of a surface, by sampling.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -116,7 +113,7 @@ pub struct DirectedDistance {
     pub mean: Option<f64>,
     /// The root of the mean square over the area of the first surface; `None` without samples.
     pub root_mean_square: Option<f64>,
-    /// What is hidden and lost; `None` where everything counts.
+    /// What is hidden and lost; `None` where it is not asked what is lost.
     pub seen: Option<AreaShares>,
 }
 
@@ -138,6 +135,11 @@ impl SurfaceDistance {
     /// The Hausdorff distance is at least this.
     pub fn lower(&self) -> f64 {
         self.forward.lower.max(self.backward.lower)
+    }
+
+    /// True when it is told of both surfaces what is lost.
+    pub fn tells_what_is_lost(&self) -> bool {
+        self.forward.seen.is_some() && self.backward.seen.is_some()
     }
 
     /// True when both directions are enclosed within the tolerances.
@@ -166,21 +168,22 @@ pub fn surface_distance(
     let (to_a, to_b) =
         par::join(|| DistanceTarget::of(a, &common, budget), || DistanceTarget::of(b, &common, budget));
     let (to_a, to_b) = (to_a?, to_b?);
-    let view = ScaledSight { sight: None, factor: common.factor, diagonal: common.diagonal };
+    let view = ScaledSight::of(None, &common, options);
     let directed = |from, to| Directed { from, to, view, common: &common, options, budget }.measure();
     let forward = directed(a, &to_b)?;
     let backward = directed(b, &to_a)?;
     Ok(Some(SurfaceDistance { forward: common.unscale(forward), backward: common.unscale(backward) }))
 }
 
-/// The distance from what of `from` can be seen to surface `to`, one direction of [`surface_distance`].
+/// The distance from what of `from` can be seen to surface `to`, one direction of [`surface_distance`]; without a `look` all of
+/// it can be seen.
 ///
 /// # Errors
 /// When the budget stops the run.
 pub fn directed_distance(
     from: Surface<'_>,
     to: Surface<'_>,
-    sight: Option<VisibilityFilter<'_>>,
+    look: Option<Look<'_>>,
     options: &DistanceOptions,
     budget: &Budget,
 ) -> Result<Option<DirectedDistance>, Stopped> {
@@ -190,7 +193,7 @@ pub fn directed_distance(
     let common = Common::of(from, to, budget)?;
     let (from, to) = common.surfaces();
     let to = DistanceTarget::of(to, &common, budget)?;
-    let view = ScaledSight { sight, factor: common.factor, diagonal: common.diagonal };
+    let view = ScaledSight::of(look, &common, options);
     let found = Directed { from, to: &to, view, common: &common, options, budget }.measure()?;
     Ok(Some(common.unscale(found)))
 }

@@ -227,7 +227,7 @@ fn covered(to: &DistanceTarget<'_>, piece: &[Corner; 3], upper: f64) -> (f64, u6
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::distance::{DistanceOptions, Surface, VisibilityFilter, directed_distance};
+    use crate::distance::{DistanceOptions, Surface, directed_distance};
 
     /// The directed distance from a triangle to the ground, of what is no higher than `seen_below`, with so many refinements.
     fn from_ground(corners: &[DVec3; 3], seen_below: f64, refinements_max: u64) -> [f64; 2] {
@@ -235,11 +235,10 @@ mod tests {
         let look = || -> VisibilitySearch<'_> {
             Box::new(move |mut places, _| Ok(Iterator::find(&mut places, |place| place.z <= seen_below)))
         };
-        let sight = VisibilityFilter { look: Some(&look), lost_beyond: 1.0 };
         let options = DistanceOptions { samples: 0, refinements_max, ..DistanceOptions::default() };
         let [from, to] = [corners, &ground].map(|positions| Surface { positions, triangles: &[[0, 1, 2]] });
         let budget = Budget::unlimited();
-        let found = directed_distance(from, to, Some(sight), &options, &budget).unwrap().unwrap();
+        let found = directed_distance(from, to, Some(&look), &options, &budget).unwrap().unwrap();
         [found.lower, found.upper]
     }
 

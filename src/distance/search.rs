@@ -109,7 +109,7 @@ impl Directed<'_, '_> {
     pub(super) fn measure(&self) -> Result<DirectedDistance, Stopped> {
         let _charge = self.budget.charge(self.from.positions.len() as u64 * 16)?;
         let (vertices, at_vertices) = self.at_vertices()?;
-        let sampled = self.at_samples()?;
+        let sampled = self.at_samples(&vertices)?;
         let known = at_vertices.or(sampled.farthest);
         let mut upper = 0.0;
         let (candidates, farthest) = self.candidates(&vertices, known, &mut upper)?;
@@ -117,7 +117,7 @@ impl Directed<'_, '_> {
         let farthest = self.refine_all(&vertices, &candidates, farthest, &mut upper)?;
         let share = |part: f64, all: u32| (all > 0).then(|| part / f64::from(all));
         let mean_of = |sum: f64| share(sum, sampled.count);
-        let seen = self.view.sight.map(|_| AreaShares {
+        let seen = self.options.lost_beyond.map(|_| AreaShares {
             hidden_share: share(f64::from(sampled.taken - sampled.count), sampled.taken).unwrap_or(0.0),
             lost_share: share(f64::from(sampled.lost), sampled.count).unwrap_or(0.0),
         });
@@ -175,36 +175,43 @@ impl Directed<'_, '_> {
     }
 
     /// The distances at the samples that count: as many as were asked for, or as some are seen to allow.
-    fn at_samples(&self) -> Result<Sampled, Stopped> {
+    fn at_samples(&self, vertices: &[AtVertex]) -> Result<Sampled, Stopped> {
         let asked = self.options.samples as usize;
         let areas = Areas::of(self.from, self.budget)?;
         if asked <= PILOTS {
-            return Ok(self.at_some_samples(&areas, asked)?.0);
+            return Ok(self.at_some_samples(vertices, &areas, asked)?.0);
         }
-        let (pilots, boxes) = self.at_some_samples(&areas, PILOTS)?;
+        let (pilots, boxes) = self.at_some_samples(vertices, &areas, PILOTS)?;
         let triangles = (self.from.triangles.len() + self.to.near.len()) as u64;
         let boxes_max = SAMPLED_BOXES + SAMPLED_BOXES_OF_TRIANGLE * triangles;
         let affordable = boxes_max as f64 / (boxes as f64 / PILOTS as f64).max(1.0);
         match (affordable as usize).min(asked) {
             few if few <= PILOTS => Ok(pilots),
-            count => Ok(self.at_some_samples(&areas, count)?.0),
+            count => Ok(self.at_some_samples(vertices, &areas, count)?.0),
         }
     }
 
     /// The distances at `count` samples, and the boxes that were looked at.
-    fn at_some_samples(&self, areas: &Areas, count: usize) -> Result<(Sampled, u64), Stopped> {
+    fn at_some_samples(
+        &self,
+        vertices: &[AtVertex],
+        areas: &Areas,
+        count: usize,
+    ) -> Result<(Sampled, u64), Stopped> {
         let parts = par::try_map_ranges(count, POINTS_OF_TASK, |range| {
             self.budget.spend(range.len() as u64)?;
             let mut of = Sampled { taken: range.len() as u32, ..Sampled::NONE };
-            let (mut hint, mut boxes, mut look) = (None, 0, self.view.look());
+            let (mut boxes, mut look) = (0, self.view.look());
             for k in range {
                 let sample = areas.sample(self.from, k, count);
                 if !self.view.counts(&mut look, sample.place, sample.triangle)? {
                     continue;
                 }
+                // What is closest to a corner of the triangle is close to all of it.
+                let [corner, ..] = self.from.triangles[sample.triangle as usize];
+                let hint = Some(vertices[corner as usize].closest_triangle);
                 let found = self.to.near.find_roughly(sample.place, hint, usize::MAX, self.budget)?;
                 if let Some(Found { nearest, boxes: looked_at, .. }) = found {
-                    hint = Some(nearest.triangle);
                     boxes += looked_at as u64;
                     of.count += 1;
                     of.lost += u32::from(self.view.loses(nearest.distance));

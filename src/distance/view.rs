@@ -1,7 +1,8 @@
 //! What of the first surface counts.
 
 use super::bound::Corner;
-use super::{VisibilityFilter, VisibilitySearch};
+use super::scale::Common;
+use super::{DistanceOptions, Look, VisibilitySearch};
 use crate::budget::Stopped;
 use crate::geom::DVec3;
 
@@ -14,11 +15,13 @@ const ROWS_MAX: usize = 3;
 /// A sight, in the coordinates of the search.
 #[derive(Clone, Copy)]
 pub(super) struct ScaledSight<'v> {
-    pub(super) sight: Option<VisibilityFilter<'v>>,
+    look: Option<Look<'v>>,
+    /// What is farther than this is lost.
+    lost_beyond: f64,
     /// What the caller's coordinates were multiplied by.
-    pub(super) factor: f64,
+    factor: f64,
     /// Diagonal of the box around both surfaces.
-    pub(super) diagonal: f64,
+    diagonal: f64,
 }
 
 /// What of a piece can be seen.
@@ -32,9 +35,14 @@ pub(super) enum VisiblePart {
 }
 
 impl<'v> ScaledSight<'v> {
+    pub(super) fn of(look: Option<Look<'v>>, common: &Common<'_>, options: &DistanceOptions) -> Self {
+        let lost_beyond = options.lost_beyond.map_or(f64::INFINITY, |length| length * common.factor);
+        Self { look, lost_beyond, factor: common.factor, diagonal: common.diagonal }
+    }
+
     /// A look for places that are near each other; `None`: nothing is hidden anywhere.
     pub(super) fn look(&self) -> Option<VisibilitySearch<'v>> {
-        self.sight.and_then(|sight| sight.look).map(|look| look())
+        self.look.map(|look| look())
     }
 
     /// Whether a place of a triangle counts.
@@ -84,7 +92,7 @@ impl<'v> ScaledSight<'v> {
 
     /// Whether something at this distance is lost.
     pub(super) fn loses(&self, distance: f64) -> bool {
-        self.sight.is_some_and(|sight| distance > sight.lost_beyond * self.factor)
+        distance > self.lost_beyond
     }
 }
 
@@ -112,11 +120,10 @@ mod tests {
                     Ok(None)
                 })
             };
-            let sight = VisibilityFilter { look: Some(&look), lost_beyond: 1.0 };
             let options = DistanceOptions { samples: 0, refinements_max: 0, ..DistanceOptions::default() };
             let [from, to] =
                 [&corners, &ground].map(|positions| Surface { positions, triangles: &[[0, 1, 2]] });
-            directed_distance(from, to, Some(sight), &options, &Budget::unlimited()).unwrap().unwrap()
+            directed_distance(from, to, Some(&look), &options, &Budget::unlimited()).unwrap().unwrap()
         };
         let spot = found(&|place| place.distance(seen) < 0.01);
         assert!((spot.lower - seen.z).abs() < 1e-6 && spot.upper > 5.0, "{spot:?}");

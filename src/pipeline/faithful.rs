@@ -156,7 +156,8 @@ fn size_of_both(diagonal: f64, result: &Soup) -> f64 {
 /// What was measured for a verdict.
 type Measured = (Option<SurfaceDistance>, Losses);
 
-/// Judges a `result` that was not measured, or of which only the `distance` from the input is known.
+/// Judges a `result` that was not measured, or of which only the `distance` from the input is known; what it tells to be lost is
+/// what is beyond [`LOST_BEYOND`].
 pub(super) fn judge_alone(
     input: &Soup,
     result: &Soup,
@@ -175,10 +176,15 @@ pub(super) fn judge_alone(
         return Ok((FidelityVerdict::of(&NO_LOSSES, moved, size), None));
     }
     let original = Original::with_diagonal(input, volume, None, diagonal);
-    let fidelity = original.measure(result, origins, budget)?;
-    let moved = fidelity.distance.map_or(0.0, |distance| distance.upper());
-    let verdict = FidelityVerdict::of(&fidelity.losses, moved, size);
-    Ok((verdict, Some((fidelity.distance, fidelity.losses))))
+    let (distance, losses) = match distance.filter(|distance| distance.tells_what_is_lost()) {
+        Some(distance) => (Some(*distance), original.losses_at(distance, result, origins, budget)?),
+        None => {
+            let measured = original.measure(result, origins, budget)?;
+            (measured.distance, measured.losses)
+        }
+    };
+    let moved = distance.map_or(0.0, |distance| distance.upper());
+    Ok((FidelityVerdict::of(&losses, moved, size), Some((distance, losses))))
 }
 
 /// How far the corners of triangles moved, where each triangle of `result` is one of `input` and all that have an area are

@@ -7,8 +7,8 @@ use super::{FidelityLimits, Refusal};
 use crate::analysis::{Analysis, DefectCode, Finding};
 use crate::budget::{Budget, CHECK_EVERY, Stage, Stopped};
 use crate::distance::{
-    DirectedDistance, DistanceOptions, FarPoint, Surface, SurfaceDistance, VisibilityFilter,
-    VisibilitySearch, directed_distance,
+    DirectedDistance, DistanceOptions, FarPoint, Look, Surface, SurfaceDistance, VisibilitySearch,
+    directed_distance,
 };
 use crate::geom::{DVec3, signed_volume};
 use crate::mesh::{Components, Soup, UnionFind};
@@ -36,6 +36,7 @@ const DISTANCE: DistanceOptions = DistanceOptions {
     samples: 1 << 14,
     refinements_max: 1 << 20,
     refining_work_max: u64::MAX,
+    lost_beyond: None,
 };
 
 /// The refinements of each direction take at most this part of the work that is left; the distance is enclosed more widely then.
@@ -183,7 +184,8 @@ impl<'i> Original<'i> {
         covered: Option<&Covered>,
         budget: &Budget,
     ) -> Result<FidelityMeasurement, Stopped> {
-        let care = DistanceOptions { refining_work_max: budget.work_left() / REFINING_PART, ..DISTANCE };
+        let refining_work_max = budget.work_left() / REFINING_PART;
+        let care = DistanceOptions { refining_work_max, lost_beyond: Some(self.lost_beyond), ..DISTANCE };
         budget.stage(Stage::Measure, || {
             let mut changed = Changed::of(self.input, result, origins, budget)?;
             let mut moved = [0.0; 2];
@@ -229,6 +231,28 @@ impl<'i> Original<'i> {
         })
     }
 
+    /// What a result lost, of whose distance it was told what is lost of all of the input and of all of the result. Nothing hides
+    /// anything.
+    pub(super) fn losses_at(
+        &self,
+        distance: &SurfaceDistance,
+        result: &Soup,
+        origins: &[u32],
+        budget: &Budget,
+    ) -> Result<Losses, Stopped> {
+        budget.stage(Stage::Measure, || {
+            let changed = Changed::of(self.input, result, origins, budget)?;
+            let lost = |of: &DirectedDistance| of.seen.map_or(0.0, |seen| seen.lost_share);
+            Ok(Losses {
+                visible_loss: lost(&distance.forward),
+                hidden_area: 0.0,
+                invented: lost(&distance.backward),
+                bodies_lost: self.bodies_lost(result, &changed, budget)?,
+                volume_change: self.volume_change(result),
+            })
+        })
+    }
+
     /// The first of these places on a triangle of the input that can be seen.
     fn first_visible(
         &self,
@@ -264,11 +288,9 @@ impl<'i> Original<'i> {
                 self.first_visible(places, gone[triangle as usize], &mut nearby, budget)
             })
         };
-        let hides = self.solid.is_some();
-        let sight =
-            VisibilityFilter { look: if hides { Some(&look) } else { None }, lost_beyond: self.lost_beyond };
+        let look: Option<Look<'_>> = if self.solid.is_some() { Some(&look) } else { None };
         let from = Surface { positions: &self.input.positions, triangles: &triangles };
-        directed_distance(from, surface(result), Some(sight), care, budget)
+        directed_distance(from, surface(result), look, care, budget)
     }
 
     /// The distance of what is new from the input, all of which counts.
@@ -280,9 +302,8 @@ impl<'i> Original<'i> {
         budget: &Budget,
     ) -> Result<Option<DirectedDistance>, Stopped> {
         let triangles: Vec<[u32; 3]> = new.iter().map(|&t| result.triangles[t as usize]).collect();
-        let sight = VisibilityFilter { look: None, lost_beyond: self.lost_beyond };
         let from = Surface { positions: &result.positions, triangles: &triangles };
-        directed_distance(from, surface(self.input), Some(sight), care, budget)
+        directed_distance(from, surface(self.input), None, care, budget)
     }
 
     fn volume_change(&self, result: &Soup) -> Option<f64> {

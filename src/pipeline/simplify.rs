@@ -1,10 +1,11 @@
 //! Fewer triangles: a manifold from the file, simplified, written and judged at each target.
 
-use super::fidelity::{Original, defined_volume};
+use super::fidelity::{LOST_BEYOND, Original, defined_volume};
 use super::input::Input;
 use super::output::{Candidate, NoCandidate, refusal};
 use super::plan::Attempt;
 use super::seams::Seams;
+use super::size::diagonal;
 use super::step::Step;
 use super::texture::texture_on;
 use super::{
@@ -71,6 +72,7 @@ struct ResultWriter<'a> {
 
 impl ResultWriter<'_> {
     fn answer(&self, results: Vec<Simplified>, mut report: Report) -> Result<Answer, Failure> {
+        let lost_beyond = Some(LOST_BEYOND * diagonal(&self.input.soup));
         let mut first = None;
         let mut others = Vec::new();
         for result in results {
@@ -82,7 +84,7 @@ impl ResultWriter<'_> {
             if let Some(refusal) = refusal(self.options, &certificate) {
                 return Ok(report.refused(refusal));
             }
-            let distance = distance(self.mesh, &result, self.budget)?;
+            let distance = distance(self.mesh, &result, lost_beyond, self.budget)?;
             // That of the first is judged when it is returned.
             let fidelity = match &first {
                 None => None,
@@ -229,7 +231,7 @@ pub(super) fn of_certified(
             Ok(_) | Err(NoCandidate::Refused(_)) => return Ok(None),
             Err(NoCandidate::Failed(failure)) => return Err(failure),
         };
-        let distance = distance(&mesh, &result, budget)?;
+        let distance = distance(&mesh, &result, None, budget)?;
         let level = Level {
             simplified: result.report,
             certificate: candidate.certificate().clone(),
@@ -367,7 +369,13 @@ fn soup_of(result: &Simplified, mesh: &Soup) -> Soup {
     }
 }
 
-fn distance(mesh: &Soup, result: &Simplified, budget: &Budget) -> Result<Option<SurfaceDistance>, Stopped> {
+/// How far a result is from the `mesh` that it is of, and what of both is farther than `lost_beyond` from the other.
+fn distance(
+    mesh: &Soup,
+    result: &Simplified,
+    lost_beyond: Option<f64>,
+    budget: &Budget,
+) -> Result<Option<SurfaceDistance>, Stopped> {
     let before = Surface { positions: &mesh.positions, triangles: &mesh.triangles };
     let after = Surface { positions: &result.positions, triangles: &result.triangles };
     // Enough for a mean, and no more than large meshes are worth.
@@ -375,7 +383,7 @@ fn distance(mesh: &Soup, result: &Simplified, budget: &Budget) -> Result<Option<
     let samples = (8 * mesh.triangles.len()).clamp(1 << 10, most as usize) as u32;
     let triangles = before.triangles.len().max(after.triangles.len()) as u64;
     let refinements_max = REFINEMENTS_MIN + triangles / TRIANGLES_PER_REFINEMENT;
-    let options = DistanceOptions { samples, refinements_max, ..DistanceOptions::default() };
+    let options = DistanceOptions { samples, refinements_max, lost_beyond, ..DistanceOptions::default() };
     budget.stage(Stage::Measure, || surface_distance(before, after, &options, budget))
 }
 

@@ -95,6 +95,7 @@ fn pair(random: &mut Random) -> [Mesh; 2] {
 }
 
 const OPTIONS: DistanceOptions = DistanceOptions {
+    lost_beyond: None,
     tolerance_relative: 0.01,
     tolerance_of_diagonal: 1e-6,
     samples: 4_000,
