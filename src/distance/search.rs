@@ -22,7 +22,8 @@ pub(super) struct Directed<'d, 'v> {
     pub(super) budget: &'d Budget,
 }
 
-/// What is closest to a vertex.
+/// A triangle close to a vertex, and its distance: the closest one, or one that is no farther than the farthest point that was
+/// known when it was looked at.
 #[derive(Debug, Clone, Copy)]
 struct AtVertex {
     closest_triangle: u32,
@@ -108,9 +109,8 @@ impl Ord for Waiting {
 impl Directed<'_, '_> {
     pub(super) fn measure(&self) -> Result<DirectedDistance, Stopped> {
         let _charge = self.budget.charge(self.from.positions.len() as u64 * 16)?;
-        let (vertices, at_vertices) = self.at_vertices()?;
-        let sampled = self.at_samples(&vertices)?;
-        let known = at_vertices.or(sampled.farthest);
+        let sampled = self.at_samples()?;
+        let (vertices, known) = self.at_vertices(sampled.farthest)?;
         let mut upper = 0.0;
         let (candidates, farthest) = self.candidates(&vertices, known, &mut upper)?;
         let _charge = self.budget.charge(candidates.len() as u64 * 16)?;
@@ -140,25 +140,35 @@ impl Directed<'_, '_> {
         }
     }
 
-    /// What is closest to each vertex that a triangle uses, and the farthest vertex.
-    fn at_vertices(&self) -> Result<(Vec<AtVertex>, Farthest), Stopped> {
+    /// What is close to each vertex that a triangle uses, and the farthest vertex where it is farther than what is `known`. What was
+    /// close to a neighbour and is close enough to this one, too, is not searched for a closer one: that bounds no less.
+    fn at_vertices(&self, known: Farthest) -> Result<(Vec<AtVertex>, Farthest), Stopped> {
         const UNUSED: u32 = u32::MAX;
         let mut triangle_of = vec![UNUSED; self.from.positions.len()];
         for (t, corners) in self.from.triangles.iter().enumerate() {
             corners.iter().for_each(|&v| triangle_of[v as usize] = t as u32);
         }
         let parts = par::try_map_ranges(triangle_of.len(), POINTS_OF_TASK, |range| {
-            let mut found = Vec::with_capacity(range.len());
-            let (mut hint, mut farthest, mut look) = (None, Farthest::NONE, self.view.look());
+            let (first, mut found) = (range.start, Vec::<AtVertex>::with_capacity(range.len()));
+            let (mut last, mut farthest, mut look) = (None, known, self.view.look());
             self.budget.spend(range.len() as u64)?;
             for v in range {
-                let close = match triangle_of[v] {
-                    UNUSED => None,
-                    _ => self.to.find(self.from.positions[v], hint, self.budget)?,
-                };
+                let (place, triangle) = (self.from.positions[v], triangle_of[v]);
+                if triangle == UNUSED {
+                    found.push(AtVertex { closest_triangle: 0, distance: 0.0 });
+                    continue;
+                }
+                let corners = self.from.triangles[triangle as usize].map(|u| u as usize);
+                let neighbour = corners.into_iter().filter(|u| (first..v).contains(u)).max();
+                let hint = neighbour.map(|u| found[u - first].closest_triangle).or(last);
+                let close = hint.map(|t| self.to.near.on_triangle(place, t));
+                if let Some(close) = close.filter(|close| close.distance <= farthest.distance) {
+                    found.push(AtVertex { closest_triangle: close.triangle, distance: close.distance });
+                    continue;
+                }
+                let close = self.to.find(place, hint, self.budget)?;
                 if let Some(Found { nearest, is_exact, .. }) = close {
-                    hint = Some(nearest.triangle);
-                    let (place, triangle) = (self.from.positions[v], triangle_of[v]);
+                    last = Some(nearest.triangle);
                     let is_farther = is_exact && nearest.distance > farthest.distance;
                     if is_farther && self.view.counts(&mut look, place, triangle)? {
                         farthest = Farthest::at(place, triangle, &nearest);
@@ -170,48 +180,41 @@ impl Directed<'_, '_> {
             }
             Ok((found, farthest))
         })?;
-        let farthest = parts.iter().fold(Farthest::NONE, |so_far, (_, farthest)| so_far.or(*farthest));
+        let farthest = parts.iter().fold(known, |so_far, (_, farthest)| so_far.or(*farthest));
         Ok((parts.into_iter().flat_map(|(found, _)| found).collect(), farthest))
     }
 
     /// The distances at the samples that count: as many as were asked for, or as some are seen to allow.
-    fn at_samples(&self, vertices: &[AtVertex]) -> Result<Sampled, Stopped> {
+    fn at_samples(&self) -> Result<Sampled, Stopped> {
         let asked = self.options.samples as usize;
         let areas = Areas::of(self.from, self.budget)?;
         if asked <= PILOTS {
-            return Ok(self.at_some_samples(vertices, &areas, asked)?.0);
+            return Ok(self.at_some_samples(&areas, asked)?.0);
         }
-        let (pilots, boxes) = self.at_some_samples(vertices, &areas, PILOTS)?;
+        let (pilots, boxes) = self.at_some_samples(&areas, PILOTS)?;
         let triangles = (self.from.triangles.len() + self.to.near.len()) as u64;
         let boxes_max = SAMPLED_BOXES + SAMPLED_BOXES_OF_TRIANGLE * triangles;
         let affordable = boxes_max as f64 / (boxes as f64 / PILOTS as f64).max(1.0);
         match (affordable as usize).min(asked) {
             few if few <= PILOTS => Ok(pilots),
-            count => Ok(self.at_some_samples(vertices, &areas, count)?.0),
+            count => Ok(self.at_some_samples(&areas, count)?.0),
         }
     }
 
     /// The distances at `count` samples, and the boxes that were looked at.
-    fn at_some_samples(
-        &self,
-        vertices: &[AtVertex],
-        areas: &Areas,
-        count: usize,
-    ) -> Result<(Sampled, u64), Stopped> {
+    fn at_some_samples(&self, areas: &Areas, count: usize) -> Result<(Sampled, u64), Stopped> {
         let parts = par::try_map_ranges(count, POINTS_OF_TASK, |range| {
             self.budget.spend(range.len() as u64)?;
             let mut of = Sampled { taken: range.len() as u32, ..Sampled::NONE };
-            let (mut boxes, mut look) = (0, self.view.look());
+            let (mut hint, mut boxes, mut look) = (None, 0, self.view.look());
             for k in range {
                 let sample = areas.sample(self.from, k, count);
                 if !self.view.counts(&mut look, sample.place, sample.triangle)? {
                     continue;
                 }
-                // What is closest to a corner of the triangle is close to all of it.
-                let [corner, ..] = self.from.triangles[sample.triangle as usize];
-                let hint = Some(vertices[corner as usize].closest_triangle);
                 let found = self.to.near.find_roughly(sample.place, hint, usize::MAX, self.budget)?;
                 if let Some(Found { nearest, boxes: looked_at, .. }) = found {
+                    hint = Some(nearest.triangle);
                     boxes += looked_at as u64;
                     of.count += 1;
                     of.lost += u32::from(self.view.loses(nearest.distance));

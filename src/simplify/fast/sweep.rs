@@ -113,66 +113,31 @@ impl Sweep {
     /// Whether `other` stays untouched.
     #[inline]
     pub(super) fn passes(&self, other: &Outside) -> Result<(), SimplifyRefusal> {
-        if self.is_beside(other) { Ok(()) } else { self.meets_nothing_of(other) }
+        if self.is_beside(other) {
+            return Ok(());
+        }
+        self.meets_nothing_of(other, |sector| self.has_beside(sector, other))
     }
 
-    /// True when there is a plane, through the vertex or the edge that `other` shares with the rim if it does, that has
-    /// all that moves on one side and the rest of `other` on the other: they meet nowhere else. For most there is.
+    /// True when a plane has all that moves on one side and the rest of `other` on the other. For most there is one.
     fn is_beside(&self, other: &Outside) -> bool {
-        let [a, b, c] = other.corners;
-        let shared = other.ids.map(|id| self.rim.contains(&id));
-        let (base, edge) = match shared {
-            [false, false, false] => return self.is_apart([a, b, c]),
-            [true, false, false] => (a, DVec3::ZERO),
-            [false, true, false] => (b, DVec3::ZERO),
-            [false, false, true] => (c, DVec3::ZERO),
-            [true, true, false] => (a, b - a),
-            [false, true, true] => (b, c - b),
-            [true, false, true] => (c, a - c),
-            [true, true, true] => return false,
-        };
-        let inward = self.middle - base;
-        let outward = (other.corners[0] + other.corners[1] + other.corners[2]) / 3.0 - base;
-        // The plane across the way to the middle, or the one halfway between the two.
-        self.is_parted(other, shared, base, edge, inward)
-            || self.is_parted(other, shared, base, edge, halfway(edge, inward, outward))
+        Moving { points: &self.points, ids: &self.rim, middle: self.middle }.is_beside(other)
     }
 
-    /// True when the plane through `base` and along `edge` across `normal` has all that moves on one side and the rest
-    /// of `other` on the other.
-    fn is_parted(
+    /// As [`is_beside`](Self::is_beside) for what a triangle sweeps.
+    fn has_beside(&self, sector: &MovingTriangle, other: &Outside) -> bool {
+        let [q, r] = sector.side;
+        let points = [q, r, sector.from, self.to];
+        let middle = points.iter().sum::<DVec3>() / 4.0;
+        Moving { points: &points, ids: &sector.ids, middle }.is_beside(other)
+    }
+
+    /// Exactly; `is_beside` may say of what a triangle sweeps that it meets nothing.
+    fn meets_nothing_of(
         &self,
         other: &Outside,
-        shared: [bool; 3],
-        base: DVec3,
-        edge: DVec3,
-        mut normal: DVec3,
-    ) -> bool {
-        let length_squared = edge.length_squared();
-        // What rounding can make of a product with a difference, by far, and what the edge is off the plane.
-        let mut doubt = 1e-13 * size(normal);
-        if length_squared > 0.0 {
-            normal -= edge * (normal.dot(edge) / length_squared);
-            doubt += 2.0 * normal.dot(edge).abs() / length_squared.sqrt();
-        }
-        let is_within = |p: DVec3| normal.dot(p - base) > doubt * size(p - base);
-        let is_beyond = |p: DVec3| -normal.dot(p - base) > doubt * size(p - base);
-        let is_shared = |i: usize| self.rim.get(i).is_some_and(|id| other.ids.contains(id));
-        (0..3).all(|k| shared[k] || is_beyond(other.corners[k]))
-            && self.points.iter().enumerate().all(|(i, &p)| is_within(p) || is_shared(i))
-    }
-
-    /// True when a plane between the middle of what moves and that of the triangle has them on its two sides.
-    fn is_apart(&self, [a, b, c]: [DVec3; 3]) -> bool {
-        let normal = (a + b + c) / 3.0 - self.middle;
-        let beyond = |p: DVec3| normal.dot(p - self.middle);
-        let nearest = beyond(a).min(beyond(b)).min(beyond(c));
-        let reach = size(a - self.middle).max(size(b - self.middle)).max(size(c - self.middle));
-        let doubt = |p: DVec3| 1e-13 * size(normal) * (reach + size(p - self.middle));
-        self.points.iter().all(|&p| nearest - beyond(p) > doubt(p))
-    }
-
-    fn meets_nothing_of(&self, other: &Outside) -> Result<(), SimplifyRefusal> {
+        is_beside: impl Fn(&MovingTriangle) -> bool,
+    ) -> Result<(), SimplifyRefusal> {
         let bounds = Aabb::of(other.corners);
         // A point of it that does not move with the star, and what the star is multiplied with to match.
         let on_rim = |id: &u32| self.rim.contains(id);
@@ -183,7 +148,7 @@ impl Sweep {
         };
         for sector in &self.sectors {
             let [q, r] = sector.side;
-            if !overlap(bounds, Aabb::of([sector.from, self.to, q, r])) {
+            if !overlap(bounds, Aabb::of([sector.from, self.to, q, r])) || is_beside(sector) {
                 continue;
             }
             if sector.stays && has_area(other.corners) {
@@ -211,6 +176,81 @@ impl Sweep {
         }
         Ok(())
     }
+}
+
+/// The corners of something convex that a move sweeps.
+struct Moving<'m> {
+    points: &'m [DVec3],
+    /// Numbers of the first ones, which do not move; the others are no corners of anything outside.
+    ids: &'m [u32],
+    middle: DVec3,
+}
+
+impl Moving<'_> {
+    /// True when there is a plane, through the vertex or the edge that `other` shares with this if it does, that has this on one side
+    /// and the rest of `other` on the other: they meet nowhere else.
+    #[inline]
+    fn is_beside(&self, other: &Outside) -> bool {
+        let [a, b, c] = other.corners;
+        let shared = other.ids.map(|id| is_among(self.ids, id));
+        let (base, edge) = match shared {
+            [false, false, false] => return self.is_apart([a, b, c]),
+            [true, false, false] => (a, DVec3::ZERO),
+            [false, true, false] => (b, DVec3::ZERO),
+            [false, false, true] => (c, DVec3::ZERO),
+            [true, true, false] => (a, b - a),
+            [false, true, true] => (b, c - b),
+            [true, false, true] => (c, a - c),
+            [true, true, true] => return false,
+        };
+        let inward = self.middle - base;
+        let outward = (other.corners[0] + other.corners[1] + other.corners[2]) / 3.0 - base;
+        // The plane across the way to the middle, or the one halfway between the two.
+        self.is_parted(other, shared, base, edge, inward)
+            || self.is_parted(other, shared, base, edge, halfway(edge, inward, outward))
+    }
+
+    /// True when the plane through `base` and along `edge` across `normal` has all that moves on one side and the rest
+    /// of `other` on the other.
+    #[inline]
+    fn is_parted(
+        &self,
+        other: &Outside,
+        shared: [bool; 3],
+        base: DVec3,
+        edge: DVec3,
+        mut normal: DVec3,
+    ) -> bool {
+        let length_squared = edge.length_squared();
+        // What rounding can make of a product with a difference, by far, and what the edge is off the plane.
+        let mut doubt = 1e-13 * size(normal);
+        if length_squared > 0.0 {
+            normal -= edge * (normal.dot(edge) / length_squared);
+            doubt += 2.0 * normal.dot(edge).abs() / length_squared.sqrt();
+        }
+        let is_within = |p: DVec3| normal.dot(p - base) > doubt * size(p - base);
+        let is_beyond = |p: DVec3| -normal.dot(p - base) > doubt * size(p - base);
+        let is_shared = |i: usize| self.ids.get(i).is_some_and(|id| other.ids.contains(id));
+        (0..3).all(|k| shared[k] || is_beyond(other.corners[k]))
+            && self.points.iter().enumerate().all(|(i, &p)| is_within(p) || is_shared(i))
+    }
+
+    /// True when a plane between the middle of this and that of the triangle has them on its two sides.
+    #[inline]
+    fn is_apart(&self, [a, b, c]: [DVec3; 3]) -> bool {
+        let normal = (a + b + c) / 3.0 - self.middle;
+        let beyond = |p: DVec3| normal.dot(p - self.middle);
+        let nearest = beyond(a).min(beyond(b)).min(beyond(c));
+        let reach = size(a - self.middle).max(size(b - self.middle)).max(size(c - self.middle));
+        let doubt = |p: DVec3| 1e-13 * size(normal) * (reach + size(p - self.middle));
+        self.points.iter().all(|&p| nearest - beyond(p) > doubt(p))
+    }
+}
+
+/// Whether `id` is among `ids`. All are compared: several at once.
+#[inline]
+fn is_among(ids: &[u32], id: u32) -> bool {
+    ids.iter().fold(false, |is_among, &other| is_among | (other == id))
 }
 
 /// The difference of the directions `inward` and `outward`, both across `edge`.
@@ -326,6 +366,41 @@ mod tests {
         assert_eq!(sweep.passes(&Outside { ids: [20, 21, 22], corners: at }), Err(SimplifyRefusal::Swept));
         let above = at.map(|p| p + DVec3::Z);
         assert_eq!(sweep.passes(&Outside { ids: [20, 21, 22], corners: above }), Ok(()));
+    }
+
+    #[test]
+    fn planes_let_pass_only_what_meets_nothing() {
+        let mut state = 7u64;
+        let mut below = |n: u64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) % n
+        };
+        let (mut passed, mut refused) = (0, 0);
+        for _ in 0..20_000 {
+            // Places of a small grid, the first few around the vertex that moves, of which a triangle may have some as corners.
+            let mut place = || DVec3::from_array([(); 3].map(|()| below(5) as f64));
+            let places: Vec<DVec3> = (0..8).map(|_| place()).collect();
+            let (from, to) = (place(), place());
+            let mut sweep = Sweep::default();
+            sweep.begin(to, 99);
+            for k in 0..5u32 {
+                let ids = [k, (k + 1) % 5];
+                sweep.add(from, ids.map(|v| places[v as usize]), ids, below(4) > 0);
+            }
+            if sweep.finish().is_empty() {
+                continue;
+            }
+            let ids = [below(8), below(8), below(8)].map(|v| v as u32);
+            let other = Outside { ids, corners: ids.map(|v| places[v as usize]) };
+            if ids[0] == ids[1] || ids[1] == ids[2] || ids[2] == ids[0] || !has_area(other.corners) {
+                continue;
+            }
+            let exactly = sweep.meets_nothing_of(&other, |_| false);
+            assert_eq!(sweep.passes(&other), exactly, "{sweep:?} {other:?}");
+            passed += u32::from(exactly.is_ok());
+            refused += u32::from(exactly.is_err());
+        }
+        assert!(passed > 1000 && refused > 5000, "{passed} {refused}");
     }
 
     #[test]
