@@ -109,19 +109,20 @@ pub fn examine(
     Ok(judged?.into_examination(file?, encoding, soup))
 }
 
-/// As [`examine`] where the bytes of `file` are gone, of which `soup` must be the f64 reading. Where the f32 reading is another one
-/// ([`Soup::is_f32_exact`]) no condition is decided.
+/// As [`examine`] where the bytes of the file go once `file` has told them from others, beside the judgement. `soup` must be their f64
+/// reading. Where the f32 reading is another one ([`Soup::is_f32_exact`]) no condition is decided.
 ///
 /// # Errors
 /// When the budget stops the run.
 pub(crate) fn examine_read(
     soup: &Soup,
-    file: Fingerprint,
+    file: impl FnOnce() -> Result<Fingerprint, Stopped> + Send,
     encoding: Encoding,
     depth: Depth,
     budget: &Budget,
 ) -> Result<Examination, Stopped> {
-    Ok(judge::judge_read(soup, None, depth, budget)?.into_examination(file, encoding, soup))
+    let (file, judged) = par::join(file, || judge::judge_read(soup, None, depth, budget));
+    Ok(judged?.into_examination(file?, encoding, soup))
 }
 
 impl judge::Judged {

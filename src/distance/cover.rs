@@ -18,10 +18,11 @@ use super::bound::Corner;
 use crate::budget::{Budget, Stopped};
 use crate::geom::{DVec2, DVec3};
 use crate::mesh::{EdgeGroups, NO_TWIN, edge_of, next_corner, triangle_of, twins};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxBuildHasher, FxHashMap};
 
-/// Triangles that one walk may reach.
+/// Triangles that one walk may reach, and that it usually reaches at most.
 const WALK_MAX: usize = 256;
+const WALK_USUAL: usize = 28;
 
 /// The piece is made smaller by at most this share, so that triangles that only touch it need not be walked: by as much as
 /// is told from rounding. The bound grows by that share of the longest edge.
@@ -62,17 +63,18 @@ impl<'s> Cloth<'s> {
     ) -> (Option<f64>, u64) {
         let Some(view) = PieceFrame::of(piece, along, self.slack) else { return (None, 0) };
         let mut walk = CoverWalk { view, covered: 0.0, rounding: 0.0, farthest: 0.0 };
-        let mut signs = FxHashMap::default();
-        let mut left = vec![(seed, 1.0)];
+        let mut signs = FxHashMap::with_capacity_and_hasher(WALK_USUAL, FxBuildHasher);
+        // With the half-edge across which a triangle was reached.
+        let mut left = vec![(seed, 1.0, NO_TWIN)];
         signs.insert(seed, 1.0);
-        while let Some((t, sign)) = left.pop() {
+        while let Some((t, sign, entry)) = left.pop() {
             let corners = self.surface.triangles[t as usize].map(|v| self.surface.positions[v as usize]);
             let seen = corners.map(|corner| walk.view.seen(corner));
             walk.cover(seen, sign);
             if walk.farthest > most || signs.len() > WALK_MAX {
                 return (None, signs.len() as u64);
             }
-            for h in [3 * t, 3 * t + 1, 3 * t + 2] {
+            for h in [3 * t, 3 * t + 1, 3 * t + 2].into_iter().filter(|&h| h != entry) {
                 let ends = [h % 3, next_corner(h) % 3].map(|c| seen[c as usize]);
                 if walk.view.misses(ends) {
                     continue;
@@ -83,7 +85,7 @@ impl<'s> Cloth<'s> {
                 }
                 let of_twin = if self.runs_back(h, twin) { sign } else { -sign };
                 match signs.insert(triangle_of(twin), of_twin) {
-                    None => left.push((triangle_of(twin), of_twin)),
+                    None => left.push((triangle_of(twin), of_twin, twin)),
                     Some(known) if known == of_twin => {}
                     Some(_) => return (None, signs.len() as u64),
                 }
@@ -212,22 +214,24 @@ impl CutPart {
 
     /// What of it is where `inside` is not negative (Sutherland and Hodgman 1974).
     fn cut(self, inside: impl Fn(DVec2) -> f64) -> Self {
-        let depth_of = |&(place, _): &(DVec2, f64)| inside(place);
-        if self.corners().iter().all(|corner| depth_of(corner) >= 0.0) {
+        let mut depths = [0.0; PART_CORNERS_MAX];
+        depths.iter_mut().zip(self.corners()).for_each(|(depth, corner)| *depth = inside(corner.0));
+        let depths = &depths[..self.len];
+        if depths.iter().all(|&depth| depth >= 0.0) {
             return self;
         }
         let mut cut = Self::EMPTY;
-        let Some(mut from) = self.corners().last().map(|last| (*last, depth_of(last))) else { return cut };
-        for &to in self.corners() {
-            let (inside_from, inside_to) = (from.1, depth_of(&to));
-            if (inside_from < 0.0) != (inside_to < 0.0) {
-                let (from, share) = (from.0, inside_from / (inside_from - inside_to));
+        let mut last = self.len - 1;
+        for (i, &to) in self.corners().iter().enumerate() {
+            let from = self.corners[last];
+            if (depths[last] < 0.0) != (depths[i] < 0.0) {
+                let share = depths[last] / (depths[last] - depths[i]);
                 cut.push((from.0 + (to.0 - from.0) * share, from.1 + (to.1 - from.1) * share));
             }
-            if inside_to >= 0.0 {
+            if depths[i] >= 0.0 {
                 cut.push(to);
             }
-            from = (to, inside_to);
+            last = i;
         }
         cut
     }

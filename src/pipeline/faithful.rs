@@ -261,6 +261,7 @@ pub(super) fn demand_faithful(answer: Answer) -> Answer {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::distance::{DistanceOptions, Surface, surface_distance};
 
     fn soup(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> Soup {
         let positions = positions.iter().copied().map(DVec3::from).collect();
@@ -302,6 +303,25 @@ mod tests {
         assert_eq!(half.word, Fidelity::Changed);
         let lost = half.changes.iter().find(|change| change.kind == ChangeKind::Lost).unwrap();
         assert!((lost.measured - 0.5).abs() < 0.02, "{}", lost.measured);
+    }
+
+    #[test]
+    fn a_known_distance_says_what_is_lost_and_one_that_does_not_is_measured_again() {
+        let (file, half) = (soup(&SQUARE, &BOTH), soup(&SQUARE, &[[0, 1, 2]]));
+        let known = |lost_beyond: Option<f64>| {
+            let [from, to] =
+                [&file, &half].map(|mesh| Surface { positions: &mesh.positions, triangles: &mesh.triangles });
+            let options = DistanceOptions { lost_beyond, ..DistanceOptions::default() };
+            surface_distance(from, to, &options, &Budget::unlimited()).unwrap()
+        };
+        let judged = |distance: Option<SurfaceDistance>| {
+            let unlimited = Budget::unlimited();
+            judge_alone(&file, &half, &[0], distance.as_ref(), None, &unlimited).unwrap().1.unwrap().1
+        };
+        let told = judged(known(Some(LOST_BEYOND * diagonal(&file))));
+        for losses in [told, judged(known(None)), judged(None)] {
+            assert!((losses.visible_loss - 0.5).abs() < 0.02 && losses.invented == 0.0, "{losses:?}");
+        }
     }
 
     #[test]

@@ -72,8 +72,8 @@ impl Input {
         Ok(soup)
     }
 
-    /// Judges `bytes`, which were read as `soup`. Those that are owned are released before that, where no other reading needs them:
-    /// of most files they are as large as everything else that the judge has.
+    /// Judges `bytes`, which were read as `soup`. Those that are owned are released as soon as they are hashed, where no other reading
+    /// needs them: of most files they are as large as everything else that the judge has.
     pub(super) fn examined(
         soup: Soup,
         bytes: Cow<'_, [u8]>,
@@ -84,8 +84,7 @@ impl Input {
         let depth = Depth::Count { samples: samples_of(options) };
         let examination = budget.stage(Stage::Certify, || match bytes {
             Cow::Owned(bytes) if soup.is_f32_exact => {
-                let file = Fingerprint::of(&bytes, budget)?;
-                drop(bytes);
+                let file = move || Fingerprint::of(&bytes, budget);
                 Ok(certificate::examine_read(&soup, file, encoding, depth, budget)?)
             }
             bytes => certificate::examine(&soup, &bytes, encoding, &options.read, depth, budget),
