@@ -254,7 +254,11 @@ fn note_unusable(surface: &ReadingSurface<'_>, verdict: &mut ConditionCounts) {
 /// The numbers below `count` without those `left_out`, which may be in any order and repeat.
 fn all_but(count: u32, mut left_out: Vec<u32>) -> Vec<u32> {
     left_out.sort_unstable();
-    let mut others = Vec::with_capacity(count as usize);
-    others.extend((0..count).filter(|t| left_out.binary_search(t).is_err()));
+    left_out.push(count);
+    let (mut next, mut others) = (0, Vec::with_capacity(count as usize));
+    for t in left_out {
+        others.extend(next..t);
+        next = t + 1;
+    }
     others
 }

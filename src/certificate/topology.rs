@@ -5,7 +5,7 @@ use super::verdict::ConditionCounts;
 use super::{Condition, Violation};
 use crate::budget::{Budget, CHECK_EVERY, Charge, Stopped};
 use crate::geom;
-use crate::mesh::{EdgeGroups, edge_of, fan_heads, prev_corner, singular_vertices, triangle_of, twins};
+use crate::mesh::{EdgeGroups, corners_from, edge_of, fan_heads, singular_vertices, triangle_of, twins};
 use crate::par;
 use std::borrow::Cow;
 
@@ -218,31 +218,28 @@ impl EdgeFaults {
     }
 
     fn look_at(&mut self, triangles: &[[u32; 3]], edge: u32, group: &[u32]) {
-        if let &[a, b] = group {
-            if edge_of(triangles, a) == edge_of(triangles, b) {
-                self.in_one_direction.push(edge);
-            }
-        } else {
+        let &[a, b] = group else {
             self.without_two_triangles.push(edge);
+            return self.look_for_duplicates(triangles, group);
+        };
+        let ([from, to, apex], [other_from, other_to, other_apex]) =
+            (corners_from(triangles, a), corners_from(triangles, b));
+        if [from, to] == [other_from, other_to] {
+            self.in_one_direction.push(edge);
         }
-        if group.len() > 1 {
-            self.look_for_duplicates(triangles, group);
+        if apex == other_apex && apex > from.max(to) {
+            self.duplicates.push(Duplicate { triangle: triangle_of(b), first: triangle_of(a) });
         }
     }
 
     /// Triangles with the same vertices share all three edges; they are taken at the edge across from the largest
     /// vertex, so that each counts once.
     fn look_for_duplicates(&mut self, triangles: &[[u32; 3]], group: &[u32]) {
-        let apex = |h: u32| edge_of(triangles, prev_corner(h))[0];
-        let largest = edge_of(triangles, group[0]).into_iter().fold(0, u32::max);
-        if let &[a, b] = group {
-            if apex(a) == apex(b) && apex(a) > largest {
-                self.duplicates.push(Duplicate { triangle: triangle_of(b), first: triangle_of(a) });
-            }
-            return;
-        }
-        let mut star: Vec<(u32, u32)> =
-            group.iter().map(|&h| (apex(h), triangle_of(h))).filter(|&(apex, _)| apex > largest).collect();
+        let apex_beyond = |&h: &u32| {
+            let [from, to, apex] = corners_from(triangles, h);
+            (apex > from.max(to)).then(|| (apex, triangle_of(h)))
+        };
+        let mut star: Vec<(u32, u32)> = group.iter().filter_map(apex_beyond).collect();
         star.sort_unstable();
         for same in star.chunk_by(|a, b| a.0 == b.0) {
             let first = same[0].1;

@@ -16,7 +16,18 @@ pub fn prev_corner(h: u32) -> u32 {
 }
 
 /// The ends of half-edge `h`: where it starts and where it goes.
+#[inline]
 pub fn edge_of(triangles: &[[u32; 3]], h: u32) -> [u32; 2] {
+    let [from, to, _] = corners_from(triangles, h);
+    [from, to]
+}
+
+/// The corners of the triangle of half-edge `h`, in order: where it starts, where it goes, and the one across from it.
+#[inline]
+pub fn corners_from(triangles: &[[u32; 3]], h: u32) -> [u32; 3] {
     let corners = triangles[triangle_of(h) as usize];
-    [corners[(h % 3) as usize], corners[(next_corner(h) % 3) as usize]]
+    let after = |k: usize| if k == 2 { 0 } else { k + 1 };
+    let first = (h % 3) as usize;
+    let second = after(first);
+    [corners[first], corners[second], corners[after(second)]]
 }

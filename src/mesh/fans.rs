@@ -119,11 +119,13 @@ pub fn fan_heads(
     budget: &Budget,
 ) -> Result<Vec<Vec<u32>>, Stopped> {
     let mut stars = vec![Vec::new(); vertices.len()];
+    let mut is_asked = vec![false; vertices.last().map_or(0, |&v| v as usize + 1)];
+    vertices.iter().for_each(|&v| is_asked[v as usize] = true);
     for (t, corners) in triangles.iter().enumerate() {
         if t % CHECK_EVERY == 0 {
             budget.check()?;
         }
-        for (c, v) in corners.iter().enumerate() {
+        for (c, v) in corners.iter().enumerate().filter(|(_, v)| is_asked.get(**v as usize) == Some(&true)) {
             if let Ok(i) = vertices.binary_search(v) {
                 stars[i].push((t * 3 + c) as u32);
             }

@@ -26,7 +26,7 @@ mod units;
 pub use boundary::{Boundary, BoundaryLoop};
 pub use color::Color;
 pub use components::{Components, UnionFind};
-pub use corners::{edge_of, next_corner, prev_corner, triangle_of};
+pub use corners::{corners_from, edge_of, next_corner, prev_corner, triangle_of};
 pub use cut::{ChosenEdges, CutMarks, CutMethod, CutResult, cut, cut_singular};
 pub use divide::divide;
 pub use edges::EdgeGroups;

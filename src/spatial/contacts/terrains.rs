@@ -24,8 +24,9 @@ pub struct Terrains {
 struct TerrainStar {
     /// Bit `2 k` while all turn counter-clockwise seen along axis `k`, bit `2 k + 1` while all turn clockwise.
     turns: u8,
-    /// How often the first direction of each view is covered, 2 for more.
-    covers: [u8; 3],
+    /// Bit `k` when the first direction of view `k` is covered, and when it is more than once.
+    is_covered: u8,
+    is_covered_again: u8,
 }
 
 impl Terrains {
@@ -41,7 +42,8 @@ impl Terrains {
         budget: &Budget,
     ) -> Result<Self, Stopped> {
         let _charge = budget.charge((positions.len() * (size_of::<TerrainStar>() + 1)) as u64)?;
-        let mut stars = vec![TerrainStar { turns: 0b11_11_11, covers: [0; 3] }; positions.len()];
+        let mut stars =
+            vec![TerrainStar { turns: 0b11_11_11, is_covered: 0, is_covered_again: 0 }; positions.len()];
         for block in triangles.chunks(CHECK_EVERY) {
             budget.check()?;
             for &corners in block {
@@ -51,9 +53,8 @@ impl Terrains {
                 for (v, covers) in corners.into_iter().zip(covers) {
                     let star = &mut stars[v as usize];
                     star.turns &= turns;
-                    for (sum, covers) in star.covers.iter_mut().zip(covers) {
-                        *sum = (*sum + covers).min(2);
-                    }
+                    star.is_covered_again |= star.is_covered & covers;
+                    star.is_covered |= covers;
                 }
             }
         }
@@ -71,23 +72,30 @@ impl Terrains {
 
 impl TerrainStar {
     fn is_terrain(&self) -> bool {
-        (0..3).any(|k| self.turns >> (2 * k) & 3 != 0 && self.covers[k] == 1)
+        let is_covered_once = self.is_covered & !self.is_covered_again;
+        (0..3).any(|k| self.turns >> (2 * k) & 3 != 0 && is_covered_once >> k & 1 != 0)
     }
 }
 
-/// For each corner and each view 1 when the triangle's angle there, taken the way it turns counter-clockwise, ends in
-/// the upper half plane but does not begin there. Around a closed star of clockwise angles the count is the same.
-fn covered_first_directions(points: [DVec3; 3]) -> [[u8; 3]; 3] {
-    // For each side and each view whether it runs into the upper half plane: along +y, or along +x.
-    let is_up = [0, 1, 2].map(|i| {
-        let (from, to) = (points[i], points[(i + 1) % 3]);
-        [(1, 2), (2, 0), (0, 1)].map(|(x, y)| (to[y] > from[y]) | ((to[y] == from[y]) & (to[x] > from[x])))
-    });
+/// For each corner the views, as bits, in which the triangle's angle there, taken the way it turns counter-clockwise, ends in
+/// the upper half plane but does not begin there. Around a closed star of clockwise angles as many do.
+#[inline]
+fn covered_first_directions([a, b, c]: [DVec3; 3]) -> [u8; 3] {
+    let is_up = [runs_up(a, b), runs_up(b, c), runs_up(c, a)];
     // The angle at a corner begins along the side that leaves it and ends against the one that arrives.
-    [0, 1, 2].map(|i| {
-        let (leaving, arriving) = (is_up[i], is_up[(i + 2) % 3]);
-        [0, 1, 2].map(|k| u8::from(!leaving[k] & !arriving[k]))
-    })
+    [0, 1, 2].map(|i| ALL_VIEWS & !is_up[i] & !is_up[(i + 2) % 3])
+}
+
+const ALL_VIEWS: u8 = 0b111;
+
+/// The views, as bits, in which the way from one point to another runs into the upper half plane: along +y, or along +x.
+#[inline]
+fn runs_up(from: DVec3, to: DVec3) -> u8 {
+    let (grows, stays) = (to.cmpgt(from).bitmask() as u8, to.cmpeq(from).bitmask() as u8);
+    // View `k` shows axis `k + 1` as x and axis `k + 2` as y.
+    let along_x = |axes: u8| axes >> 1 | axes << 2;
+    let along_y = |axes: u8| axes >> 2 | axes << 1;
+    ALL_VIEWS & (along_y(grows) | along_y(stays) & along_x(grows))
 }
 
 #[cfg(test)]
@@ -132,6 +140,19 @@ mod tests {
         let mut folded = rim(7, 1.0, 2);
         folded.swap(2, 3);
         assert!(!is_terrain(&fan(DVec3::ZERO, &folded), &[]));
+    }
+
+    #[test]
+    fn the_views_in_which_a_way_runs_up_are_told_from_its_coordinates() {
+        let steps = [-1.0, 0.0, 1.0];
+        for way in steps.iter().flat_map(|&x| steps.iter().flat_map(move |&y| steps.map(|z| [x, y, z]))) {
+            for k in 0..3 {
+                let (x, y) = (way[(k + 1) % 3], way[(k + 2) % 3]);
+                let is_up = y > 0.0 || y == 0.0 && x > 0.0;
+                let views = runs_up(DVec3::ONE, DVec3::ONE + DVec3::from(way));
+                assert_eq!(views >> k & 1 == 1, is_up, "{way:?} {k}");
+            }
+        }
     }
 
     #[test]
