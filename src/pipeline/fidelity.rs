@@ -29,11 +29,14 @@ const LOSS_BEHIND_PATCHES_MAX: f64 = 0.1;
 /// feature of the part. Bodies that pass through each other are all seen through a hole of one triangle.
 pub(super) const DEFECTS_MAX: f64 = 0.1;
 
+/// Samples that tell what is lost, of each surface.
+pub(super) const LOSS_SAMPLES: u32 = 1 << 14;
+
 /// What a measurement may cost, and how close it encloses a distance.
 const DISTANCE: DistanceOptions = DistanceOptions {
     tolerance_relative: 0.05,
     tolerance_of_diagonal: 1e-5,
-    samples: 1 << 14,
+    samples: LOSS_SAMPLES,
     refinements_max: 1 << 20,
     refining_work_max: u64::MAX,
     lost_beyond: None,

@@ -1,6 +1,6 @@
 //! Fewer triangles: a manifold from the file, simplified, written and judged at each target.
 
-use super::fidelity::{LOST_BEYOND, Original, defined_volume};
+use super::fidelity::{LOSS_SAMPLES, LOST_BEYOND, Original, defined_volume};
 use super::input::Input;
 use super::output::{Candidate, NoCandidate, refusal};
 use super::plan::Attempt;
@@ -84,7 +84,7 @@ impl ResultWriter<'_> {
             if let Some(refusal) = refusal(self.options, &certificate) {
                 return Ok(report.refused(refusal));
             }
-            let distance = distance(self.mesh, &result, lost_beyond, self.budget)?;
+            let distance = distance(self.mesh, candidate.soup(), lost_beyond, self.budget)?;
             // That of the first is judged when it is returned.
             let fidelity = match &first {
                 None => None,
@@ -231,7 +231,7 @@ pub(super) fn of_certified(
             Ok(_) | Err(NoCandidate::Refused(_)) => return Ok(None),
             Err(NoCandidate::Failed(failure)) => return Err(failure),
         };
-        let distance = distance(&mesh, &result, None, budget)?;
+        let distance = distance(&mesh, candidate.soup(), None, budget)?;
         let level = Level {
             simplified: result.report,
             certificate: candidate.certificate().clone(),
@@ -369,10 +369,11 @@ fn soup_of(result: &Simplified, mesh: &Soup) -> Soup {
     }
 }
 
-/// How far a result is from the `mesh` that it is of, and what of both is farther than `lost_beyond` from the other.
+/// How far a result, as it was written, is from the `mesh` that it is of, and what of both is farther than `lost_beyond` from the
+/// other, unless that takes more samples than a mean.
 fn distance(
     mesh: &Soup,
-    result: &Simplified,
+    result: &Soup,
     lost_beyond: Option<f64>,
     budget: &Budget,
 ) -> Result<Option<SurfaceDistance>, Stopped> {
@@ -381,6 +382,7 @@ fn distance(
     // Enough for a mean, and no more than large meshes are worth.
     let most = DistanceOptions::default().samples;
     let samples = (8 * mesh.triangles.len()).clamp(1 << 10, most as usize) as u32;
+    let lost_beyond = lost_beyond.filter(|_| samples >= LOSS_SAMPLES);
     let triangles = before.triangles.len().max(after.triangles.len()) as u64;
     let refinements_max = REFINEMENTS_MIN + triangles / TRIANGLES_PER_REFINEMENT;
     let options = DistanceOptions { samples, refinements_max, lost_beyond, ..DistanceOptions::default() };
