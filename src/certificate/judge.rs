@@ -262,3 +262,16 @@ fn all_but(count: u32, mut left_out: Vec<u32>) -> Vec<u32> {
     }
     others
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_left_out_may_be_in_any_order_and_repeat() {
+        assert_eq!(all_but(6, vec![5, 1, 3, 1]), [0, 2, 4]);
+        assert!(all_but(3, vec![0, 1, 2]).is_empty());
+        assert_eq!(all_but(2, Vec::new()), [0, 1]);
+        assert!(all_but(0, Vec::new()).is_empty());
+    }
+}

@@ -20,9 +20,11 @@ use crate::geom::{DVec2, DVec3};
 use crate::mesh::{EdgeGroups, NO_TWIN, edge_of, next_corner, triangle_of, twins};
 use rustc_hash::{FxBuildHasher, FxHashMap};
 
-/// Triangles that one walk may reach, and that it usually reaches at most.
+/// Triangles that one walk may reach.
 const WALK_MAX: usize = 256;
-const WALK_USUAL: usize = 28;
+
+/// Triangles that a walk has room for at first.
+const WALK_ROOM: usize = 28;
 
 /// The piece is made smaller by at most this share, so that triangles that only touch it need not be walked: by as much as
 /// is told from rounding. The bound grows by that share of the longest edge.
@@ -63,7 +65,7 @@ impl<'s> Cloth<'s> {
     ) -> (Option<f64>, u64) {
         let Some(view) = PieceFrame::of(piece, along, self.slack) else { return (None, 0) };
         let mut walk = CoverWalk { view, covered: 0.0, rounding: 0.0, farthest: 0.0 };
-        let mut signs = FxHashMap::with_capacity_and_hasher(WALK_USUAL, FxBuildHasher);
+        let mut signs = FxHashMap::with_capacity_and_hasher(WALK_ROOM, FxBuildHasher);
         // With the half-edge across which a triangle was reached.
         let mut left = vec![(seed, 1.0, NO_TWIN)];
         signs.insert(seed, 1.0);

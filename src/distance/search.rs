@@ -140,8 +140,9 @@ impl Directed<'_, '_> {
         }
     }
 
-    /// What is close to each vertex that a triangle uses, and the farthest vertex where it is farther than what is `known`. What was
-    /// close to a neighbour and is close enough to this one, too, is not searched for a closer one: that bounds no less.
+    /// A triangle close to each vertex that a triangle uses, and the farther of what is `known` and of the farthest vertex. Where
+    /// the triangle of a neighbour is no farther than the farthest point so far, none closer is searched: the vertex can then be no
+    /// farther than that point, which is all that a bound needs.
     fn at_vertices(&self, known: Farthest) -> Result<(Vec<AtVertex>, Farthest), Stopped> {
         const UNUSED: u32 = u32::MAX;
         let mut triangle_of = vec![UNUSED; self.from.positions.len()];

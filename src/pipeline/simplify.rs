@@ -369,8 +369,8 @@ fn soup_of(result: &Simplified, mesh: &Soup) -> Soup {
     }
 }
 
-/// How far a result, as it was written, is from the `mesh` that it is of, and what of both is farther than `lost_beyond` from the
-/// other, unless that takes more samples than a mean.
+/// How far a result, as it was written, is from the `mesh` that it is of. Tells, too, what of both is farther than `lost_beyond` from
+/// the other, where there are as many samples as that takes.
 fn distance(
     mesh: &Soup,
     result: &Soup,

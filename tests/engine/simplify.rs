@@ -66,6 +66,31 @@ fn a_cube_of_many_triangles_becomes_one_of_twelve_and_stays_where_it_is() {
 }
 
 #[test]
+fn the_distance_is_that_of_the_written_file_whose_coordinates_are_rounded() {
+    // Three million from the origin, float32 has places a quarter apart.
+    let mut cube = grid_cube(8);
+    let low = 3e6 + 0.1;
+    cube.positions.iter_mut().flatten().for_each(|x| *x = low + 20.0 * *x);
+    let bytes = encode(&cube, Encoding::Off);
+    for mode in MODES {
+        let options = Options {
+            simplify: to(&[Target::Faces(12)], mode),
+            output_format: Some(Format::Stl),
+            ..Options::default()
+        };
+        let answer = run(Operation::Simplify, &bytes, &options, &Budget::unlimited()).unwrap();
+        let written = read(answer.output.as_ref().unwrap());
+        // Both are cubes: each plane moved by as much as its corners.
+        let offset = written.positions.iter().map(|p| (p.x - low).abs().min((p.x - low - 20.0).abs()));
+        let offset = offset.fold(0.0, f64::max);
+        let distance = answer.report.distance.unwrap();
+        assert!(offset > 0.05 && distance.lower() >= 0.99 * offset, "{mode:?}: {offset} {distance:?}");
+        let of_level = answer.report.levels[0].distance.unwrap();
+        assert_eq!(of_level, distance);
+    }
+}
+
+#[test]
 fn several_targets_give_a_file_each_in_the_order_asked() {
     let bytes = encode(&grid_cube(8), Encoding::Off);
     for mode in MODES {

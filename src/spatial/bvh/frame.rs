@@ -50,12 +50,12 @@ impl Box32 {
 
 // Without the care for NaN that `f32::min` takes.
 #[inline]
-fn smaller<T: PartialOrd>(a: T, b: T) -> T {
+fn smaller(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
 #[inline]
-pub(super) fn larger<T: PartialOrd>(a: T, b: T) -> T {
+pub(super) fn larger(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
@@ -109,11 +109,7 @@ impl Frame {
     /// The box of the mapped points. The map keeps order, so that only the corners of the box need to be mapped.
     #[inline]
     pub(in crate::spatial) fn box_of<const N: usize>(&self, points: [DVec3; N]) -> Box32 {
-        let (mut min, mut max) = (points[0], points[0]);
-        for p in &points[1..] {
-            min = DVec3::new(smaller(min.x, p.x), smaller(min.y, p.y), smaller(min.z, p.z));
-            max = DVec3::new(larger(max.x, p.x), larger(max.y, p.y), larger(max.z, p.z));
-        }
+        let Aabb { min, max } = Aabb::of(points);
         Box32 { min: self.map(min), max: self.map(max) }
     }
 }
