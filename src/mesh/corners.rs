@@ -26,5 +26,9 @@ pub fn edge_of(triangles: &[[u32; 3]], h: u32) -> [u32; 2] {
 #[inline]
 pub fn corners_from(triangles: &[[u32; 3]], h: u32) -> [u32; 3] {
     let corners = triangles[triangle_of(h) as usize];
-    [h, next_corner(h), prev_corner(h)].map(|h| corners[(h % 3) as usize])
+    // The steps of `next_corner` within a triangle: those of half-edges would be divided by three again.
+    let after = |k: usize| if k == 2 { 0 } else { k + 1 };
+    let first = (h % 3) as usize;
+    let second = after(first);
+    [corners[first], corners[second], corners[after(second)]]
 }
