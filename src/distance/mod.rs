@@ -10,6 +10,7 @@
 
 mod bound;
 mod cover;
+mod creases;
 mod pieces;
 mod samples;
 mod scale;
@@ -20,6 +21,7 @@ mod view;
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 use crate::par;
+pub use creases::creases_recovered;
 pub use samples::{Areas, SurfaceSample};
 use scale::Common;
 use search::Directed;

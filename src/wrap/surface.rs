@@ -125,6 +125,29 @@ impl InputSurface {
         self.bvh.any_in_box(Aabb::of([from, to]), budget, may_meet)
     }
 
+    /// How thick the solid is behind a point of its surface, if less than `most`: how far it is `inward`, a unit vector, to where
+    /// the solid ends.
+    pub(super) fn thickness(
+        &self,
+        point: DVec3,
+        inward: DVec3,
+        most: f64,
+        budget: &Budget,
+    ) -> Result<Option<f64>, Stopped> {
+        let mut found = Vec::new();
+        self.crossings(point, point + inward * most, budget, &mut found)?;
+        found.retain(|hit| self.says(hit.triangle) == Says::Boundary && (hit.is_exit || hit.share > 1e-6));
+        found.sort_by(|a, b| a.share.total_cmp(&b.share));
+        let mut depth = 1;
+        for at_one_place in found.chunk_by(|a, b| b.share - a.share < 1e-6) {
+            depth += at_one_place.iter().map(|hit| if hit.is_exit { -1 } else { 1 }).sum::<i32>();
+            if depth <= 0 {
+                return Ok(Some(at_one_place[0].share * most));
+            }
+        }
+        Ok(None)
+    }
+
     /// Every crossing of the segment, in no particular order.
     pub(super) fn crossings(
         &self,

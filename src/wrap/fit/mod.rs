@@ -60,32 +60,36 @@ pub(super) fn fit(
     let stars = Stars::of(triangles, positions.len(), budget)?;
     let mut places: Vec<DVec3> = positions.iter().map(|&p| lattice.units_of(p)).collect();
     // Clamped cuts, and thin walls.
-    let goals = plain_goals(signs, surface, cuts, &places, budget)?;
+    let (goals, planes) = plain_goals(signs, surface, cuts, &places, budget)?;
     let mut moved = move_all(&stars, triangles, &mut places, &goals, budget)?;
     // Long ways, of walls that grew, are gone in steps, each with its neighbours.
     for _ in 1..PASSES {
         let again = move_all(&stars, triangles, &mut places, &goals, budget)?;
         moved.iter_mut().zip(&again).for_each(|(all, &one)| *all |= one);
     }
-    let goals = crease_goals(surface, cuts, &stars, triangles, &places, budget)?;
+    let goals = crease_goals(&planes, &stars, triangles, &places, budget)?;
     let onto = move_all(&stars, triangles, &mut places, &goals, budget)?;
     moved.iter_mut().zip(&onto).for_each(|(all, &one)| *all |= one);
     for (v, place) in places.iter().enumerate().filter(|&(v, _)| moved[v]) {
         positions[v] = lattice.nearest(*place);
     }
-    let taken_back = undo::until_nothing_meets(positions, &before, triangles, &stars, budget)?;
+    let nearest = |place: DVec3| lattice.nearest(lattice.units_of(place));
+    let taken_back = undo::until_nothing_meets(positions, &before, triangles, &stars, nearest, budget)?;
     let count = |flags: &[bool]| flags.iter().filter(|&&flag| flag).count() as u64;
     Ok(FitCounts { moved: count(&moved), onto_creases: count(&onto), taken_back })
 }
 
-/// Where each vertex belongs by itself.
+/// A point of the input and the unit normal there.
+type Plane = (DVec3, DVec3);
+
+/// Where each vertex belongs by itself, and the plane of the input that it belongs to.
 fn plain_goals(
     signs: &Signs<'_>,
     surface: &InputSurface,
     cuts: &[LatticeCut],
     places: &[DVec3],
     budget: &Budget,
-) -> Result<Vec<Option<DVec3>>, Stopped> {
+) -> Result<(Vec<Option<DVec3>>, Vec<Option<Plane>>), Stopped> {
     let (thin_names, sheet_names) = (separate(signs.thin.len()), separate(surface.sheets().len()));
     let thin = NearestSearch::build(signs.thin.as_flattened(), &thin_names, budget)?;
     let sheets = NearestSearch::build(surface.sheets().as_flattened(), &sheet_names, budget)?;
@@ -95,16 +99,19 @@ fn plain_goals(
             let (cut, place) = (&cuts[v], places[v]);
             if cut.triangle != NONE {
                 let is_clamped = cut.point.distance_squared(place) > 1e-6;
-                return Ok(is_clamped.then_some(cut.point));
+                return Ok((is_clamped.then_some(cut.point), Some((cut.point, surface.normal(cut.triangle)))));
             }
             match cut.why {
-                Inside::NearSheet => behind_sheet(&sheets, signs.wall, place, budget),
-                Inside::Wound | Inside::NearThin => onto_thin(&thin, place, budget),
+                Inside::NearSheet => Ok((behind_sheet(&sheets, signs.wall, place, budget)?, None)),
+                Inside::Wound | Inside::NearThin => {
+                    let plane = onto_thin(&thin, place, budget)?;
+                    Ok((plane.map(|(point, _)| point), plane))
+                }
             }
         };
         range.map(goal).collect::<Result<Vec<_>, Stopped>>()
     })?;
-    Ok(goals.concat())
+    Ok(goals.concat().into_iter().unzip())
 }
 
 /// The place at the thickness of a `wall` from the sheet.
@@ -118,18 +125,18 @@ fn behind_sheet(
     Ok(nearest.map(|nearest| nearest.point.lerp(place, wall / nearest.distance)))
 }
 
-/// The place on a thin wall that a vertex before it grew from.
-fn onto_thin(thin: &NearestSearch<'_>, place: DVec3, budget: &Budget) -> Result<Option<DVec3>, Stopped> {
+/// The place on a thin wall that a vertex before it grew from, and the normal there.
+fn onto_thin(thin: &NearestSearch<'_>, place: DVec3, budget: &Budget) -> Result<Option<Plane>, Stopped> {
     let Some(nearest) = thin.find(place, None, budget)? else { return Ok(None) };
     let [a, b, c] = thin.corners(nearest.triangle);
-    let is_before = (b - a).cross(c - a).dot(place - nearest.point) > 0.0;
-    Ok((is_before && nearest.distance < THIN * 1.5).then_some(nearest.point))
+    let normal = (b - a).cross(c - a).normalize_or_zero();
+    let is_before = normal.dot(place - nearest.point) > 0.0;
+    Ok((is_before && nearest.distance < THIN * 1.5).then_some((nearest.point, normal)))
 }
 
 /// Where vertices beside creases belong.
 fn crease_goals(
-    surface: &InputSurface,
-    cuts: &[LatticeCut],
+    of_vertex: &[Option<Plane>],
     stars: &Stars,
     triangles: &[[u32; 3]],
     places: &[DVec3],
@@ -141,12 +148,7 @@ fn crease_goals(
         Ok(range
             .map(|v| {
                 planes.clear();
-                let mut add = |v: usize| {
-                    let cut = &cuts[v];
-                    if cut.triangle != NONE {
-                        planes.push((cut.point, surface.normal(cut.triangle)));
-                    }
-                };
+                let mut add = |v: usize| planes.extend(of_vertex[v]);
                 add(v);
                 for &t in stars.of_vertex(v) {
                     triangles[t as usize].iter().filter(|&&w| w as usize != v).for_each(|&w| add(w as usize));
@@ -160,7 +162,7 @@ fn crease_goals(
 }
 
 /// The point nearest to the planes (a point and a unit normal each), unless they are all about the same.
-fn crease_point(planes: &[(DVec3, DVec3)]) -> Option<DVec3> {
+fn crease_point(planes: &[Plane]) -> Option<DVec3> {
     let least =
         planes.iter().flat_map(|(_, n)| planes.iter().map(move |(_, m)| n.dot(*m))).fold(1.0f64, f64::min);
     if least > CREASE_COS {

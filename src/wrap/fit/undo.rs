@@ -6,11 +6,15 @@ use crate::geom::{Aabb, DVec3, Shared, ThreePointPlane, are_collinear, contact};
 use crate::par;
 use crate::spatial::{self, Bvh, Search, Terrains, coincident_f64};
 
+/// How far a vertex goes back each time that what it belongs to meets something, as shares of its move: what all but passes is
+/// about as near to the input as if it had not gone back.
+const SHARES_BACK: [f64; 4] = [1.0 / 16.0, 1.0 / 8.0, 1.0 / 4.0, 1.0 / 2.0];
+
 /// Rounds in which only the vertices of what meets go back.
-const ROUNDS_NEAR: usize = 4;
+const ROUNDS_NEAR: usize = 8;
 
 /// Rounds before everything goes back.
-const ROUNDS: usize = 9;
+const ROUNDS: usize = 13;
 
 /// Contacts to take back in a round.
 const CONTACTS: usize = 1 << 20;
@@ -25,16 +29,18 @@ pub(super) fn until_nothing_meets(
     before: &[DVec3],
     triangles: &[[u32; 3]],
     stars: &Stars,
+    nearest: impl Fn(DVec3) -> DVec3,
     budget: &Budget,
 ) -> Result<u64, Stopped> {
-    let mut taken_back = 0;
+    let fitted = positions.to_vec();
+    let mut times = vec![0u8; positions.len()];
     // After a search for contacts only triangles around a vertex that went back since can have begun to meet others.
     let mut changed: Option<Vec<u32>> = None;
     for round in 0..ROUNDS {
         let Offenders { vertices: mut bad, are_contacts } =
             offenders(positions, triangles, changed.as_deref(), budget)?;
         if bad.is_empty() {
-            return Ok(taken_back);
+            break;
         }
         for _ in ROUNDS_NEAR..=round {
             bad = around(&bad, stars).flat_map(|t| triangles[t as usize]).collect();
@@ -42,8 +48,13 @@ pub(super) fn until_nothing_meets(
             bad.dedup();
         }
         for &v in &bad {
-            taken_back += u64::from(positions[v as usize] != before[v as usize]);
-            positions[v as usize] = before[v as usize];
+            let v = v as usize;
+            if positions[v] == before[v] {
+                continue;
+            }
+            let share = SHARES_BACK.get(usize::from(times[v])).filter(|_| round < ROUNDS_NEAR);
+            positions[v] = share.map_or(before[v], |&share| nearest(fitted[v].lerp(before[v], share)));
+            times[v] += 1;
         }
         if are_contacts {
             changed = Some(Vec::new());
@@ -55,12 +66,9 @@ pub(super) fn until_nothing_meets(
         }
     }
     if !offenders(positions, triangles, None, budget)?.vertices.is_empty() {
-        for (position, &before) in positions.iter_mut().zip(before) {
-            taken_back += u64::from(*position != before);
-            *position = before;
-        }
+        positions.copy_from_slice(before);
     }
-    Ok(taken_back)
+    Ok(positions.iter().zip(&fitted).filter(|(now, fitted)| now != fitted).count() as u64)
 }
 
 /// The triangles around these vertices, those around several of them repeatedly.
@@ -190,10 +198,10 @@ mod tests {
         let mut positions = before.clone();
         positions[4] = DVec3::splat(0.5);
         positions[1] = DVec3::new(4.5, 0.0, 0.0);
-        let taken_back = until_nothing_meets(&mut positions, &before, &triangles, &stars, &budget).unwrap();
+        let taken_back = until_nothing_meets(&mut positions, &before, &triangles, &stars, |p| p, &budget).unwrap();
         assert!(taken_back >= 1 && positions[4] == before[4]);
         positions[1] = positions[0];
-        until_nothing_meets(&mut positions, &before, &triangles, &stars, &budget).unwrap();
+        until_nothing_meets(&mut positions, &before, &triangles, &stars, |p| p, &budget).unwrap();
         assert_eq!(positions[1], before[1]);
     }
 }

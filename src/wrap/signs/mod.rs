@@ -26,6 +26,9 @@ const SHEET: f64 = 1.733;
 /// a line in a tube, have vertices of the lattice that hang together beside them everywhere.
 pub(super) const THIN: f64 = 1.0;
 
+/// Thickness in cells below which a wall grows.
+const SLAB: f64 = 1.75;
+
 const KNOWN: u8 = 1;
 const INSIDE: u8 = 2;
 /// The cube above this vertex meets a triangle that bounds a volume, or a sheet.
@@ -34,6 +37,8 @@ const TOUCHED_BY_SHEET: u8 = 8;
 const SHEET_SIDE: u8 = 16;
 const THIN_SIDE: u8 = 32;
 const LISTED: u8 = 64;
+/// The solid behind the surface in the cube above this vertex is thin.
+const WALL: u8 = 128;
 
 /// Why a vertex is inside.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -18,34 +18,91 @@ impl Signs<'_> {
             let near = self.widen(near, (self.sheet_reach - SHEET).ceil() as usize, budget)?;
             self.grow_sheets(&near, surface.sheets(), &mut changed, budget)?;
         }
-        // Also sheets that grew into each other's front and so not at all.
-        if !self.mark_thin(budget)? {
-            return Ok(changed);
+        if self.mark_walls(surface, budget)? {
+            self.grow_thin(surface, WALL, &mut changed, budget)?;
         }
+        // Also sheets that grew into each other's front and so not at all.
+        if self.mark_thin(budget)? {
+            self.grow_thin(surface, THIN_SIDE, &mut changed, budget)?;
+        }
+        Ok(changed)
+    }
+
+    /// Puts vertices beside the marked cubes inside, where they are close to the triangles that go through those; takes the
+    /// marks away.
+    fn grow_thin(
+        &mut self,
+        surface: &InputSurface,
+        mark: u8,
+        changed: &mut Vec<u32>,
+        budget: &Budget,
+    ) -> Result<(), Stopped> {
+        let mut thin = Vec::new();
         for &corners in &surface.corners {
             let (mut count, mut is_thin) = (1, false);
             raster::cubes(corners, self.lattice.dims, |cube| {
-                is_thin |= self.state[self.lattice.index(cube)] & THIN_SIDE != 0;
+                is_thin |= self.state[self.lattice.index(cube)] & mark != 0;
                 count += 1;
             });
             budget.spend(count)?;
             if is_thin {
-                self.thin.push(corners);
+                thin.push(corners);
             }
         }
-        let near = self.near(THIN_SIDE, budget)?;
-        self.state.iter_mut().for_each(|state| *state &= !THIN_SIDE);
-        let thin = std::mem::take(&mut self.thin);
-        self.grow(
-            &near,
-            &thin,
-            Wall { reach: THIN, mark: THIN_SIDE },
-            |_, _, _| Ok(true),
-            &mut changed,
-            budget,
-        )?;
-        self.thin = thin;
-        Ok(changed)
+        let near = self.near(mark, budget)?;
+        self.state.iter_mut().for_each(|state| *state &= !mark);
+        let is_taken = |place: DVec3, nearest: &Nearest, search: &NearestSearch<'_>| {
+            if mark == THIN_SIDE {
+                return Ok(true);
+            }
+            let [a, b, c] = search.corners(nearest.triangle);
+            let normal = (b - a).cross(c - a).normalize_or_zero();
+            let away = place - nearest.point;
+            let out = if normal.dot(away) > 1e-3 { away.normalize_or_zero() } else { normal };
+            let thickness = surface.thickness(nearest.point, -out, SLAB, budget)?;
+            Ok(thickness.is_some_and(|t| nearest.distance <= (SLAB - t) / 2.0))
+        };
+        self.grow(&near, &thin, Wall { reach: THIN, mark: THIN_SIDE }, is_taken, changed, budget)?;
+        self.thin.extend(thin);
+        Ok(())
+    }
+
+    /// Marks the touched cubes behind whose surface the solid is thinner than [`SLAB`]; true when there is one.
+    fn mark_walls(&mut self, surface: &InputSurface, budget: &Budget) -> Result<bool, Stopped> {
+        let mut seen = vec![0u8; self.lattice.len()];
+        let mut samples: Vec<(u32, DVec3, DVec3)> = Vec::new();
+        for &corners in surface.boundary() {
+            let [a, b, c] = corners;
+            let normal = (b - a).cross(c - a).normalize_or_zero();
+            let (size, mut count) = (normal.abs(), 1);
+            let axis = if size.x >= size.y && size.x >= size.z { 0 } else if size.y >= size.z { 1 } else { 2 };
+            let bit = 1u8 << (2 * axis + usize::from(normal[axis] < 0.0));
+            raster::cubes(corners, self.lattice.dims, |cube| {
+                let index = self.lattice.index(cube);
+                count += 1;
+                if seen[index] & bit == 0 {
+                    seen[index] |= bit;
+                    let middle = DVec3::from_array(cube.map(|n| n as f64 + 0.5));
+                    samples.push((index as u32, crate::geom::closest_point_on_triangle(middle, corners), normal));
+                }
+            });
+            budget.spend(count)?;
+        }
+        let found = par::try_map_ranges(samples.len(), 256, |range| {
+            budget.spend(range.len() as u64 * 4)?;
+            samples[range]
+                .iter()
+                .map(|&(_, point, normal)| Ok(surface.thickness(point, -normal, SLAB, budget)?.is_some()))
+                .collect::<Result<Vec<bool>, Stopped>>()
+        })?;
+        let mut is_any = false;
+        for (&(cube, ..), is_thin) in samples.iter().zip(found.into_iter().flatten()) {
+            if is_thin {
+                self.state[cube as usize] |= WALL;
+                is_any = true;
+            }
+        }
+        Ok(is_any)
     }
 
     /// Marks the touched cubes with no vertex inside in them and their neighbours; true when there is one.
