@@ -18,9 +18,6 @@ const ABOUT: f64 = 0.939_692_620_785_908_4;
 /// Samples along all creases together.
 const SAMPLES: usize = 1 << 13;
 
-/// Says whether a place, which is on a triangle of the first surface, counts.
-pub type PlaceFilter<'f> = dyn FnMut(DVec3, u32) -> Result<bool, Stopped> + 'f;
-
 /// The share of the length of the creases of `from`, where `counts` is true, that edges of `to` recover: folded by more than 20 degrees,
 /// within `reach`, and at an angle of less than 20 degrees. `None`: nothing counts.
 ///
@@ -30,7 +27,7 @@ pub fn creases_recovered(
     from: Surface<'_>,
     to: Surface<'_>,
     reach: f64,
-    counts: &mut PlaceFilter<'_>,
+    counts: &mut dyn FnMut(DVec3, u32) -> Result<bool, Stopped>,
     budget: &Budget,
 ) -> Result<Option<f64>, Stopped> {
     let wanted = creases(from, FOLDED, budget)?;

@@ -186,6 +186,7 @@ fn combined(
     let (Attempt { draft, actions, .. }, candidate) = *found;
     let moved = actions.iter().map(|action| action.move_max).sum();
     let losses = Losses {
+        creases_recovered: None,
         invented: share_of_new(&draft),
         volume_change: change_of_volume(&draft, exact_volume),
         ..NO_LOSSES

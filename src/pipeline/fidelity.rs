@@ -72,6 +72,9 @@ pub struct Losses {
     pub bodies_lost: u32,
     /// Share by which the volume changed; `None` where that of the input is not defined.
     pub volume_change: Option<f64>,
+    /// Share of the length of the creases of the input that can be seen which a rebuilt surface has, too; `None`: nothing was
+    /// rebuilt, or there are none.
+    pub creases_recovered: Option<f64>,
 }
 
 impl FidelityMeasurement {
@@ -137,7 +140,7 @@ pub(super) fn defined_volume(before: Option<&Analysis>) -> Option<f64> {
 
 /// An input to measure results against.
 pub(super) struct Original<'i> {
-    input: &'i Soup,
+    pub(super) input: &'i Soup,
     /// Volume, where it is defined.
     volume: Option<f64>,
     /// What hides parts of it; `None`: nothing does.
@@ -225,6 +228,7 @@ impl<'i> Original<'i> {
                 invented: share(new_area * invented, result_area),
                 bodies_lost: self.bodies_lost(result, &changed, budget)?,
                 volume_change: self.volume_change(result),
+                creases_recovered: None,
             };
             let distance = directions.map(|(forward, backward)| SurfaceDistance {
                 forward: at_least(forward, moved[0]),
@@ -252,12 +256,13 @@ impl<'i> Original<'i> {
                 invented: lost(&distance.backward),
                 bodies_lost: self.bodies_lost(result, &changed, budget)?,
                 volume_change: self.volume_change(result),
+                creases_recovered: None,
             })
         })
     }
 
     /// The first of these places on a triangle of the input that can be seen.
-    fn first_visible(
+    pub(super) fn first_visible(
         &self,
         places: &mut dyn Iterator<Item = DVec3>,
         triangle: u32,

@@ -161,6 +161,11 @@ pub struct Deviation {
     /// Bodies of the input that can be seen and are lost as a whole; null: not measured.
     #[schema(required)]
     pub bodies_lost: Option<u32>,
+    /// Share of the length of the creases of the input, from 0 to 1, that a rebuilt surface has, too: edges that can be seen and whose
+    /// triangles are folded by more than 30 degrees, beside which, within an eighth of a cell of the lattice, the result has an edge that is folded by more
+    /// than 20 degrees and runs the same way to 20 degrees; by sampling. Of several parts the least. null: nothing was rebuilt, or there are none.
+    #[schema(required)]
+    pub creases_recovered: Option<f64>,
     /// Area of the patches of holes as a share of the surface, from 0 to 1, before its triangles are made fewer; null where `holes`
     /// is null. A patch that a later step put inside a body or cut counts as it was made.
     #[schema(required)]
@@ -320,6 +325,7 @@ impl Deviation {
             hidden_area: inner.losses.and_then(|losses| finite(losses.hidden_area)),
             invented: inner.losses.and_then(|losses| finite(losses.invented)),
             bodies_lost: inner.losses.map(|losses| losses.bodies_lost),
+            creases_recovered: inner.losses.and_then(|losses| finite(losses.creases_recovered?)),
             interpolated_area_share: inner
                 .filling
                 .as_ref()

@@ -157,10 +157,11 @@ impl InputSurface {
         found: &mut Vec<SegmentHit>,
     ) -> Result<(), Stopped> {
         found.clear();
-        self.bvh.visit_box(Aabb::of([from, to]), budget, |triangle| {
+        self.bvh.visit_segment([from, to], budget, |triangle| {
             if let Some((share, is_exit)) = crossing(from, to, self.corners[triangle as usize]) {
                 found.push(SegmentHit { share, triangle, is_exit });
             }
+            true
         })
     }
 }

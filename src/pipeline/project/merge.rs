@@ -236,6 +236,7 @@ fn losses(reports: &[&Report]) -> Option<Losses> {
         invented: share(|losses| losses.invented),
         bodies_lost: known().map(|losses| losses.bodies_lost).sum(),
         volume_change: (is_defined && all != 0.0).then_some(changed / all),
+        creases_recovered: known().filter_map(|losses| losses.creases_recovered).reduce(f64::min),
     })
 }
 

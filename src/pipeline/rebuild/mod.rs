@@ -1,5 +1,6 @@
 //! The last rung: a surface rebuilt around what no local edit could make a solid.
 
+mod creases;
 mod effort;
 mod fewer;
 mod filled;
@@ -9,7 +10,7 @@ pub use self::effort::Effort;
 
 use self::effort::coarser_than;
 use self::fewer::WrapReduction;
-use super::fidelity::{FidelityMeasurement, Original, defined_volume};
+use super::fidelity::{FidelityMeasurement, LOSS_MAX, Original, defined_volume};
 use super::input::Input;
 use super::output::{Candidate, NoCandidate};
 use super::plan::{Attempt, Variant};
@@ -59,6 +60,9 @@ const CAUSES: [DefectCode; 9] = [
     DefectCode::MisnestedShell,
 ];
 
+/// Where thin walls have more than this share of the area, a finer lattice is tried for what they are too thick.
+const THIN_SHARE: f64 = 0.1;
+
 /// A certified mesh, how it came to be, and how far it is from the input.
 pub(super) struct Rebuilt {
     candidate: Candidate,
@@ -66,6 +70,8 @@ pub(super) struct Rebuilt {
     origins: Vec<u32>,
     /// What it is chosen by, with patches over openings in the way.
     pub(super) fidelity: FidelityMeasurement,
+    /// Side of a cube of its lattice, in the unit of the file.
+    spacing: f64,
     /// What is told of it: nothing of the file is hidden that a straight line leads to.
     as_seen: FidelityMeasurement,
     actions: Vec<Action>,
@@ -198,18 +204,22 @@ impl LatticeSearch<'_> {
             cells_before = made.account.cells;
             let fidelity =
                 original.measure(made.candidate.soup(), &made.candidate.origins(&made.origins), budget)?;
+            // Thin walls that the cells are too large for become too thick.
+            let is_coarse = made.account.thin_share > THIN_SHARE && fidelity.losses.invented > LOSS_MAX;
             let is_better = |best: &Rebuilt| !best.fidelity.is_no_worse(&fidelity, limits);
             if best.as_ref().is_none_or(is_better) {
                 let wrap = action(&made, choices.open_shells, self.before);
                 let actions = actions.iter().cloned().chain([wrap]).chain(made.simplified).collect();
-                let RebuiltMesh { candidate, origins, .. } = made;
-                best = Some(Rebuilt { candidate, origins, fidelity, as_seen: fidelity, actions });
+                let RebuiltMesh { candidate, origins, account, .. } = made;
+                let spacing = account.spacing;
+                best = Some(Rebuilt { candidate, origins, fidelity, spacing, as_seen: fidelity, actions });
             }
-            if fidelity.passes(limits) || is_coarser {
+            if fidelity.passes(limits) && !is_coarse || is_coarser {
                 break;
             }
         }
         let mut best = best.ok_or_else(|| refused(Refusal::OverBudget { units: budget.work_used() }))?;
+        let creases = creases::recovered(&original, best.candidate.soup(), best.spacing, budget)?;
         // What is inside of the outermost shells goes as chosen.
         let fills = self.options.nesting == NestingPolicy::Fill;
         let is_open = !fills && self.before.is_none_or(|before| before.counts.boundary_edges > 0);
@@ -222,6 +232,7 @@ impl LatticeSearch<'_> {
                 best.fidelity = best.fidelity.to_choose_by(as_seen, best.fidelity.losses.invented, limits);
             }
         }
+        best.as_seen.losses.creases_recovered = creases;
         match best.as_seen.breach(limits) {
             None => Ok(best),
             Some(refusal) => Err(NotRebuilt::Refused { refusal, actions: best.actions }),

@@ -17,6 +17,7 @@ use crate::geom::DVec3;
 use crate::par;
 use crate::spatial::NearestSearch;
 use normals::Stars;
+use undo::Moves;
 
 /// Normals around a vertex that differ by more than 30 degrees make it a vertex beside a crease.
 const CREASE_COS: f64 = 0.866;
@@ -26,7 +27,7 @@ const CREASE_COS: f64 = 0.866;
 const CREASE_REACH: f64 = 0.6;
 
 /// Times that vertices are moved toward their own goals.
-const PASSES: usize = 4;
+const PASSES: usize = 10;
 
 /// Weight that keeps the point near the middle of those around it where planes do not determine it.
 const HOLD: f64 = 1e-3;
@@ -56,7 +57,6 @@ pub(super) fn fit(
     budget: &Budget,
 ) -> Result<FitCounts, Stopped> {
     let _charge = budget.charge(positions.len() as u64 * 64 + triangles.len() as u64 * 16)?;
-    let before = positions.to_vec();
     let stars = Stars::of(triangles, positions.len(), budget)?;
     let mut places: Vec<DVec3> = positions.iter().map(|&p| lattice.units_of(p)).collect();
     // Clamped cuts, and thin walls.
@@ -70,11 +70,14 @@ pub(super) fn fit(
     let goals = crease_goals(&planes, &stars, triangles, &places, budget)?;
     let onto = move_all(&stars, triangles, &mut places, &goals, budget)?;
     moved.iter_mut().zip(&onto).for_each(|(all, &one)| *all |= one);
+    let before = positions.to_vec();
     for (v, place) in places.iter().enumerate().filter(|&(v, _)| moved[v]) {
         positions[v] = lattice.nearest(*place);
     }
-    let nearest = |place: DVec3| lattice.nearest(lattice.units_of(place));
-    let taken_back = undo::until_nothing_meets(positions, &before, triangles, &stars, nearest, budget)?;
+    let moves = Moves { before: &before, goals: positions, triangles, stars: &stars, lattice, budget };
+    let settled = moves.without_contacts()?;
+    let taken_back = settled.iter().zip(&*positions).filter(|(settled, goal)| settled != goal).count() as u64;
+    positions.copy_from_slice(&settled);
     let count = |flags: &[bool]| flags.iter().filter(|&&flag| flag).count() as u64;
     Ok(FitCounts { moved: count(&moved), onto_creases: count(&onto), taken_back })
 }
@@ -104,7 +107,7 @@ fn plain_goals(
             match cut.why {
                 Inside::NearSheet => Ok((behind_sheet(&sheets, signs.wall, place, budget)?, None)),
                 Inside::Wound | Inside::NearThin => {
-                    let plane = onto_thin(&thin, place, budget)?;
+                    let plane = onto_thin(&thin, place, cut.why, budget)?;
                     Ok((plane.map(|(point, _)| point), plane))
                 }
             }
@@ -126,12 +129,12 @@ fn behind_sheet(
 }
 
 /// The place on a thin wall that a vertex before it grew from, and the normal there.
-fn onto_thin(thin: &NearestSearch<'_>, place: DVec3, budget: &Budget) -> Result<Option<Plane>, Stopped> {
+fn onto_thin(thin: &NearestSearch<'_>, place: DVec3, why: Inside, budget: &Budget) -> Result<Option<Plane>, Stopped> {
     let Some(nearest) = thin.find(place, None, budget)? else { return Ok(None) };
     let [a, b, c] = thin.corners(nearest.triangle);
     let normal = (b - a).cross(c - a).normalize_or_zero();
-    let is_before = normal.dot(place - nearest.point) > 0.0;
-    Ok((is_before && nearest.distance < THIN * 1.5).then_some((nearest.point, normal)))
+    let is_before = why == Inside::NearThin || normal.dot(place - nearest.point) > 0.0;
+    Ok((is_before && nearest.distance < THIN * 2.5).then_some((nearest.point, normal)))
 }
 
 /// Where vertices beside creases belong.

@@ -1,5 +1,6 @@
 //! Takes moves back until no two triangles meet, exactly.
 
+use super::super::lattice::Lattice;
 use super::normals::Stars;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, DVec3, Shared, ThreePointPlane, are_collinear, contact};
@@ -16,59 +17,145 @@ const ROUNDS_NEAR: usize = 8;
 /// Rounds before everything goes back.
 const ROUNDS: usize = 13;
 
+/// Times that half of the vertices that went back try again to come nearer to where they belong.
+const ATTEMPTS: u32 = 8;
+
 /// Contacts to take back in a round.
 const CONTACTS: usize = 1 << 20;
 
-/// Puts vertices back `before` their moves, those of triangles that meet or have no area and then ever more around them,
-/// until nothing meets. `before` has no contacts. Gives the number of vertices that went back.
-///
-/// # Errors
-/// When the budget stops the run.
-pub(super) fn until_nothing_meets(
-    positions: &mut [DVec3],
-    before: &[DVec3],
-    triangles: &[[u32; 3]],
-    stars: &Stars,
-    nearest: impl Fn(DVec3) -> DVec3,
-    budget: &Budget,
-) -> Result<u64, Stopped> {
-    let fitted = positions.to_vec();
-    let mut times = vec![0u8; positions.len()];
-    // After a search for contacts only triangles around a vertex that went back since can have begun to meet others.
-    let mut changed: Option<Vec<u32>> = None;
-    for round in 0..ROUNDS {
-        let Offenders { vertices: mut bad, are_contacts } =
-            offenders(positions, triangles, changed.as_deref(), budget)?;
-        if bad.is_empty() {
-            break;
-        }
-        for _ in ROUNDS_NEAR..=round {
-            bad = around(&bad, stars).flat_map(|t| triangles[t as usize]).collect();
-            bad.sort_unstable();
-            bad.dedup();
-        }
-        for &v in &bad {
-            let v = v as usize;
-            if positions[v] == before[v] {
-                continue;
+/// Moves of a surface that has no contacts before them.
+pub(super) struct Moves<'m> {
+    /// Positions before the moves.
+    pub(super) before: &'m [DVec3],
+    /// Where vertices belong.
+    pub(super) goals: &'m [DVec3],
+    pub(super) triangles: &'m [[u32; 3]],
+    pub(super) stars: &'m Stars,
+    /// The lattice that positions are on.
+    pub(super) lattice: &'m Lattice,
+    pub(super) budget: &'m Budget,
+}
+
+impl Moves<'_> {
+    /// Positions as near to the goals as nothing meets and no triangle is without area. Where something does, vertices go back a
+    /// part of their way, those of triangles that meet or have no area and then ever more around them, until nothing does; then
+    /// half of those that went back try half of what is missing, and the other half, and so on.
+    ///
+    /// # Errors
+    /// When the budget stops the run.
+    pub(super) fn without_contacts(&self) -> Result<Vec<DVec3>, Stopped> {
+        let swept = self.swept_boxes()?;
+        let mut positions = self.goals.to_vec();
+        self.take_back(&mut positions, self.before, &SHARES_BACK, None, &swept)?;
+        for attempt in 0..ATTEMPTS {
+            let settled = positions.clone();
+            let mut tried = Vec::new();
+            for (v, position) in positions.iter_mut().enumerate() {
+                // Two that are in each other's way rarely try at the same time.
+                let has_turn = (v as u32).wrapping_mul(0x9e37_79b9) >> 31 == attempt & 1;
+                if has_turn && *position != self.goals[v] {
+                    *position = self.nearest(position.lerp(self.goals[v], 0.5));
+                    tried.push(v as u32);
+                }
             }
-            let share = SHARES_BACK.get(usize::from(times[v])).filter(|_| round < ROUNDS_NEAR);
-            positions[v] = share.map_or(before[v], |&share| nearest(fitted[v].lerp(before[v], share)));
-            times[v] += 1;
+            let changed = sorted_around(&tried, self.stars);
+            self.take_back(&mut positions, &settled, &[], Some(changed), &swept)?;
         }
+        Ok(positions)
+    }
+
+    fn nearest(&self, place: DVec3) -> DVec3 {
+        self.lattice.nearest(self.lattice.units_of(place))
+    }
+
+    /// A search structure with a box around each triangle wherever its corners may be on their ways.
+    fn swept_boxes(&self) -> Result<Bvh, Stopped> {
+        let bounds = |t: &[u32; 3]| {
+            let ends = t.map(|v| [self.before[v as usize], self.goals[v as usize]]);
+            let bounds = Aabb::of(ends.into_iter().flatten());
+            [bounds.min, bounds.max]
+        };
+        let ends: Vec<DVec3> = self.triangles.iter().flat_map(bounds).collect();
+        let names: Vec<[u32; 3]> =
+            (0..self.triangles.len() as u32).map(|t| [2 * t, 2 * t + 1, 2 * t + 1]).collect();
+        Bvh::build(&ends, &names, None, self.budget)
+    }
+
+    /// Moves vertices from `positions` back to `before`, where nothing meets, by these shares one after the other and then all
+    /// the way, until nothing meets. Where `changed` names triangles, all others are as `before`.
+    fn take_back(
+        &self,
+        positions: &mut [DVec3],
+        before: &[DVec3],
+        shares: &[f64],
+        mut changed: Option<Vec<u32>>,
+        swept: &Bvh,
+    ) -> Result<(), Stopped> {
+        let ahead = positions.to_vec();
+        let mut times = vec![0u8; positions.len()];
+        for round in 0..ROUNDS {
+            let Offenders { vertices: mut bad, are_contacts } =
+                self.offenders(positions, changed.as_deref(), swept)?;
+            if bad.is_empty() {
+                return Ok(());
+            }
+            for _ in ROUNDS_NEAR..=round {
+                bad = around(&bad, self.stars).flat_map(|t| self.triangles[t as usize]).collect();
+                bad.sort_unstable();
+                bad.dedup();
+            }
+            bad.retain(|&v| positions[v as usize] != before[v as usize]);
+            for v in bad.iter().map(|&v| v as usize) {
+                let share = shares.get(usize::from(times[v])).filter(|_| round < ROUNDS_NEAR);
+                positions[v] = share.map_or(before[v], |&share| self.nearest(ahead[v].lerp(before[v], share)));
+                times[v] += 1;
+            }
+            // After a search for contacts only triangles around a vertex that went back since can have begun to meet others.
+            if are_contacts || changed.is_some() {
+                let known = if are_contacts { None } else { changed.take() };
+                let mut now = sorted_around(&bad, self.stars);
+                now.extend(known.into_iter().flatten());
+                now.sort_unstable();
+                now.dedup();
+                changed = Some(now);
+            }
+        }
+        if !self.offenders(positions, None, swept)?.vertices.is_empty() {
+            positions.copy_from_slice(before);
+        }
+        Ok(())
+    }
+
+    /// What breaks P0 or P1 `among` these triangles and all others, or everywhere.
+    fn offenders(
+        &self,
+        positions: &[DVec3],
+        among: Option<&[u32]>,
+        swept: &Bvh,
+    ) -> Result<Offenders, Stopped> {
+        let (triangles, budget) = (self.triangles, self.budget);
+        let mut bad = at_one_place(positions, budget)?;
+        bad.extend(flat(positions, triangles, among, budget)?);
+        let are_contacts = bad.is_empty();
         if are_contacts {
-            changed = Some(Vec::new());
+            let meeting = match among {
+                None => everywhere(positions, triangles, budget)?,
+                Some(among) => of_these(positions, triangles, among, swept, budget)?,
+            };
+            bad.extend(meeting.into_iter().flat_map(|t| triangles[t as usize]));
         }
-        if let Some(changed) = &mut changed {
-            changed.extend(around(&bad, stars));
-            changed.sort_unstable();
-            changed.dedup();
-        }
+        bad.sort_unstable();
+        bad.dedup();
+        Ok(Offenders { vertices: bad, are_contacts })
     }
-    if !offenders(positions, triangles, None, budget)?.vertices.is_empty() {
-        positions.copy_from_slice(before);
-    }
-    Ok(positions.iter().zip(&fitted).filter(|(now, fitted)| now != fitted).count() as u64)
+}
+
+/// The triangles around these vertices, ascending.
+fn sorted_around(vertices: &[u32], stars: &Stars) -> Vec<u32> {
+    let mut found: Vec<u32> = around(vertices, stars).collect();
+    found.sort_unstable();
+    found.dedup();
+    found
 }
 
 /// The triangles around these vertices, those around several of them repeatedly.
@@ -82,29 +169,6 @@ struct Offenders {
     vertices: Vec<u32>,
     /// Contacts were searched, which takes triangles with an area and vertices at places of their own.
     are_contacts: bool,
-}
-
-/// What breaks P0 or P1 `among` these triangles and all others, or everywhere.
-fn offenders(
-    positions: &[DVec3],
-    triangles: &[[u32; 3]],
-    among: Option<&[u32]>,
-    budget: &Budget,
-) -> Result<Offenders, Stopped> {
-    let mut bad = at_one_place(positions, budget)?;
-    bad.extend(flat(positions, triangles, among, budget)?);
-    let are_contacts = bad.is_empty();
-    if are_contacts {
-        let bvh = Bvh::build(positions, triangles, None, budget)?;
-        let meeting = match among {
-            None => everywhere(positions, triangles, &bvh, budget)?,
-            Some(among) => of_these(positions, triangles, among, &bvh, budget)?,
-        };
-        bad.extend(meeting.into_iter().flat_map(|t| triangles[t as usize]));
-    }
-    bad.sort_unstable();
-    bad.dedup();
-    Ok(Offenders { vertices: bad, are_contacts })
 }
 
 /// Vertices that are where another one is.
@@ -141,13 +205,13 @@ fn flat(
 fn everywhere(
     positions: &[DVec3],
     triangles: &[[u32; 3]],
-    bvh: &Bvh,
     budget: &Budget,
 ) -> Result<Vec<u32>, Stopped> {
+    let bvh = Bvh::build(positions, triangles, None, budget)?;
     let search = Search::All { keep: CONTACTS };
     // The surface is closed: every edge has its two triangles.
     let terrains = Terrains::find(positions, triangles, &[], budget)?;
-    let contacts = spatial::self_contacts(positions, triangles, bvh, Some(&terrains), search, budget)?;
+    let contacts = spatial::self_contacts(positions, triangles, &bvh, Some(&terrains), search, budget)?;
     Ok(contacts.list.iter().flat_map(|contact| [contact.a, contact.b]).collect())
 }
 
@@ -195,13 +259,22 @@ mod tests {
             tetrahedron.into_iter().chain(tetrahedron.map(|t| t.map(|v| v + 4))).collect();
         let budget = Budget::unlimited();
         let stars = Stars::of(&triangles, 8, &budget).unwrap();
-        let mut positions = before.clone();
-        positions[4] = DVec3::splat(0.5);
-        positions[1] = DVec3::new(4.5, 0.0, 0.0);
-        let taken_back = until_nothing_meets(&mut positions, &before, &triangles, &stars, |p| p, &budget).unwrap();
-        assert!(taken_back >= 1 && positions[4] == before[4]);
-        positions[1] = positions[0];
-        until_nothing_meets(&mut positions, &before, &triangles, &stars, |p| p, &budget).unwrap();
-        assert_eq!(positions[1], before[1]);
+        let lattice = Lattice::around(Aabb::of(before.iter().copied()), 64, usize::MAX).unwrap();
+        let moved = |goals: &[DVec3]| {
+            let moves =
+                Moves { before: &before, goals, triangles: &triangles, stars: &stars, lattice: &lattice, budget: &budget };
+            let settled = moves.without_contacts().unwrap();
+            assert!(everywhere(&settled, &triangles, &budget).unwrap().is_empty());
+            settled
+        };
+        let mut goals = before.clone();
+        goals[4] = DVec3::splat(0.5);
+        goals[1] = DVec3::new(4.5, 0.0, 0.0);
+        let settled = moved(&goals);
+        // It stops where the tetrahedra all but meet.
+        let gap = settled[4].element_sum() - 4.0;
+        assert!(settled[1] == goals[1] && (0.0..0.5).contains(&gap), "{settled:?}");
+        goals[1] = goals[0];
+        assert!(moved(&goals)[1] != goals[0]);
     }
 }
