@@ -26,7 +26,8 @@ const SHEET: f64 = 1.733;
 /// a line in a tube, have vertices of the lattice that hang together beside them everywhere.
 pub(super) const THIN: f64 = 1.0;
 
-/// Thickness in cells below which a wall grows.
+/// Thickness in cells below which a wall grows, to this thickness: vertices of a lattice in a slab that is thicker hang together,
+/// whatever its direction, and in a thinner one they may not.
 const SLAB: f64 = 1.75;
 
 const KNOWN: u8 = 1;
@@ -37,8 +38,8 @@ const TOUCHED_BY_SHEET: u8 = 8;
 const SHEET_SIDE: u8 = 16;
 const THIN_SIDE: u8 = 32;
 const LISTED: u8 = 64;
-/// The solid behind the surface in the cube above this vertex is thin.
-const WALL: u8 = 128;
+/// Walls grow in the cube above this vertex.
+const GROWING: u8 = 128;
 
 /// Why a vertex is inside.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -3,7 +3,11 @@
 use super::super::surface::{InputSurface, separate};
 use super::super::{raster, seams};
 use super::*;
+use crate::geom::closest_point_on_triangle;
 use crate::spatial::{Nearest, NearestSearch};
+
+/// A place farther than this before a triangle, in cells, is in front of it.
+const BESIDE: f64 = 1e-3;
 
 impl Signs<'_> {
     /// Puts vertices inside where the surface would be lost; gives those that are inside by this.
@@ -18,95 +22,100 @@ impl Signs<'_> {
             let near = self.widen(near, (self.sheet_reach - SHEET).ceil() as usize, budget)?;
             self.grow_sheets(&near, surface.sheets(), &mut changed, budget)?;
         }
-        if self.mark_walls(surface, budget)? {
-            self.grow_thin(surface, WALL, &mut changed, budget)?;
+        let mut thin = Vec::new();
+        if self.mark_thin_solid(surface, budget)? {
+            thin.extend(self.grow_thin(surface, Why::IsThin, &mut changed, budget)?);
         }
         // Also sheets that grew into each other's front and so not at all.
-        if self.mark_thin(budget)? {
-            self.grow_thin(surface, THIN_SIDE, &mut changed, budget)?;
+        if self.mark_lost(budget)? {
+            thin.extend(self.grow_thin(surface, Why::IsLost, &mut changed, budget)?);
         }
+        thin.sort_unstable();
+        thin.dedup();
+        self.thin = thin.into_iter().map(|t| surface.corners[t as usize]).collect();
         Ok(changed)
     }
 
-    /// Puts vertices beside the marked cubes inside, where they are close to the triangles that go through those; takes the
-    /// marks away.
+    /// Puts vertices beside the marked cubes inside that are close to the triangles which go through those; takes the marks
+    /// away and gives the triangles.
     fn grow_thin(
         &mut self,
         surface: &InputSurface,
-        mark: u8,
+        why: Why,
         changed: &mut Vec<u32>,
         budget: &Budget,
-    ) -> Result<(), Stopped> {
+    ) -> Result<Vec<u32>, Stopped> {
         let mut thin = Vec::new();
-        for &corners in &surface.corners {
-            let (mut count, mut is_thin) = (1, false);
+        for (t, &corners) in surface.corners.iter().enumerate() {
+            let (mut count, mut is_marked) = (1, false);
             raster::cubes(corners, self.lattice.dims, |cube| {
-                is_thin |= self.state[self.lattice.index(cube)] & mark != 0;
+                is_marked |= self.state[self.lattice.index(cube)] & GROWING != 0;
                 count += 1;
             });
             budget.spend(count)?;
-            if is_thin {
-                thin.push(corners);
+            if is_marked {
+                thin.push(t as u32);
             }
         }
-        let near = self.near(mark, budget)?;
-        self.state.iter_mut().for_each(|state| *state &= !mark);
-        let is_taken = |place: DVec3, nearest: &Nearest, search: &NearestSearch<'_>| {
-            if mark == THIN_SIDE {
-                return Ok(true);
+        let near = self.near(GROWING, budget)?;
+        self.state.iter_mut().for_each(|state| *state &= !GROWING);
+        let is_taken = |place: DVec3, nearest: &Nearest, search: &NearestSearch<'_>| match why {
+            Why::IsLost => Ok(true),
+            Why::IsThin => {
+                let away = place - nearest.point;
+                let normal = normal_of(search.corners(nearest.triangle));
+                // From the front inward; what is behind is in the solid, or where all but nothing is.
+                let inward = if normal.dot(away) > BESIDE { -away.normalize_or_zero() } else { -normal };
+                let thickness = surface.thickness(nearest.point, inward, SLAB, budget)?;
+                Ok(thickness.is_some_and(|thickness| nearest.distance <= (SLAB - thickness) / 2.0))
             }
-            let [a, b, c] = search.corners(nearest.triangle);
-            let normal = (b - a).cross(c - a).normalize_or_zero();
-            let away = place - nearest.point;
-            let out = if normal.dot(away) > 1e-3 { away.normalize_or_zero() } else { normal };
-            let thickness = surface.thickness(nearest.point, -out, SLAB, budget)?;
-            Ok(thickness.is_some_and(|t| nearest.distance <= (SLAB - t) / 2.0))
         };
-        self.grow(&near, &thin, Wall { reach: THIN, mark: THIN_SIDE }, is_taken, changed, budget)?;
-        self.thin.extend(thin);
-        Ok(())
+        let corners: Vec<[DVec3; 3]> = thin.iter().map(|&t| surface.corners[t as usize]).collect();
+        let wall = Wall { reach: THIN, mark: THIN_SIDE };
+        self.grow(&near, &corners, wall, is_taken, changed, budget)?;
+        Ok(thin)
     }
 
-    /// Marks the touched cubes behind whose surface the solid is thinner than [`SLAB`]; true when there is one.
-    fn mark_walls(&mut self, surface: &InputSurface, budget: &Budget) -> Result<bool, Stopped> {
-        let mut seen = vec![0u8; self.lattice.len()];
-        let mut samples: Vec<(u32, DVec3, DVec3)> = Vec::new();
+    /// Marks the cubes behind whose surface the solid is thinner than [`SLAB`]; true when there is one.
+    fn mark_thin_solid(&mut self, surface: &InputSurface, budget: &Budget) -> Result<bool, Stopped> {
+        let (mut seen, _charge) = budget.vec::<u8>(self.lattice.len())?;
+        seen.resize(self.lattice.len(), 0);
+        // One place in each cube for each of six directions.
+        let mut places = Vec::new();
         for &corners in surface.boundary() {
-            let [a, b, c] = corners;
-            let normal = (b - a).cross(c - a).normalize_or_zero();
-            let (size, mut count) = (normal.abs(), 1);
-            let axis = if size.x >= size.y && size.x >= size.z { 0 } else if size.y >= size.z { 1 } else { 2 };
-            let bit = 1u8 << (2 * axis + usize::from(normal[axis] < 0.0));
+            let normal = normal_of(corners);
+            let axis = (0..3).fold(0, |most, a| if normal[a].abs() > normal[most].abs() { a } else { most });
+            let direction = 1u8 << (2 * axis + usize::from(normal[axis] < 0.0));
+            let mut count = 1;
             raster::cubes(corners, self.lattice.dims, |cube| {
                 let index = self.lattice.index(cube);
                 count += 1;
-                if seen[index] & bit == 0 {
-                    seen[index] |= bit;
+                if seen[index] & direction == 0 {
+                    seen[index] |= direction;
                     let middle = DVec3::from_array(cube.map(|n| n as f64 + 0.5));
-                    samples.push((index as u32, crate::geom::closest_point_on_triangle(middle, corners), normal));
+                    places.push((index, closest_point_on_triangle(middle, corners), -normal));
                 }
             });
             budget.spend(count)?;
         }
-        let found = par::try_map_ranges(samples.len(), 256, |range| {
+        let _charge = budget.charge(places.len() as u64 * 56)?;
+        let is_thin = par::try_map_ranges(places.len(), 256, |range| {
             budget.spend(range.len() as u64 * 4)?;
-            samples[range]
+            places[range]
                 .iter()
-                .map(|&(_, point, normal)| Ok(surface.thickness(point, -normal, SLAB, budget)?.is_some()))
+                .map(|&(_, place, inward)| Ok(surface.thickness(place, inward, SLAB, budget)?.is_some()))
                 .collect::<Result<Vec<bool>, Stopped>>()
         })?;
         let mut is_any = false;
-        for (&(cube, ..), is_thin) in samples.iter().zip(found.into_iter().flatten()) {
-            if is_thin {
-                self.state[cube as usize] |= WALL;
-                is_any = true;
-            }
+        for (&(cube, ..), _) in places.iter().zip(is_thin.into_iter().flatten()).filter(|(_, is_thin)| *is_thin) {
+            self.state[cube] |= GROWING;
+            is_any = true;
         }
         Ok(is_any)
     }
 
     /// Marks the touched cubes with no vertex inside in them and their neighbours; true when there is one.
-    fn mark_thin(&mut self, budget: &Budget) -> Result<bool, Stopped> {
+    fn mark_lost(&mut self, budget: &Budget) -> Result<bool, Stopped> {
         let mut is_any = false;
         for cube in 0..self.state.len() {
             if cube % CHECK_EVERY == 0 {
@@ -116,7 +125,7 @@ impl Signs<'_> {
                 let mut all = 0;
                 self.around_cube(cube, |state, _| all |= *state);
                 if all & INSIDE == 0 {
-                    self.state[cube] |= THIN_SIDE;
+                    self.state[cube] |= GROWING;
                     is_any = true;
                 }
             }
@@ -211,6 +220,15 @@ impl Signs<'_> {
     }
 }
 
+/// Why a wall grows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Why {
+    /// The solid is thin there: as far as it takes to be as thick as a slab.
+    IsThin,
+    /// No vertex is inside there.
+    IsLost,
+}
+
 /// How far a wall grows in cells, and what the vertices in it are marked with.
 #[derive(Debug, Clone, Copy)]
 struct Wall {
@@ -221,4 +239,9 @@ struct Wall {
 /// Whether `place`, whose closest point is `closest` of a triangle, is behind that triangle or in its plane.
 fn is_behind(place: DVec3, closest: DVec3, [a, b, c]: [DVec3; 3]) -> bool {
     (b - a).cross(c - a).dot(place - closest) <= 0.0
+}
+
+/// Unit normal, zero for a triangle without area.
+fn normal_of([a, b, c]: [DVec3; 3]) -> DVec3 {
+    (b - a).cross(c - a).normalize_or_zero()
 }
