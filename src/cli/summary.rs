@@ -179,6 +179,9 @@ fn closeness(deviation: &Deviation, unit: Units) -> Option<String> {
     if let Some(count) = deviation.bodies_lost.filter(|&count| count > 0) {
         let _ = write!(text, "; bodies lost: {count}");
     }
+    if let Some(share) = deviation.creases_recovered {
+        let _ = write!(text, "; {} % of the creases recovered", figure(share * 100.0));
+    }
     Some(text)
 }
 

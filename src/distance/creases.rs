@@ -122,3 +122,70 @@ fn creases(surface: Surface<'_>, fold_cos: f64, budget: &Budget) -> Result<Vec<C
     }
     Ok(creases)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The faces of a cube with sides of 2 around the origin, outward, whose corners are moved.
+    fn cube(moved: impl Fn(DVec3) -> DVec3) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+        let corner =
+            |n: usize| moved(DVec3::from_array([0, 1, 2].map(|a| if n >> a & 1 == 1 { 1.0 } else { -1.0 })));
+        let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let triangles = faces.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]);
+        ((0..8).map(corner).collect(), triangles.collect())
+    }
+
+    fn share(
+        from: &(Vec<DVec3>, Vec<[u32; 3]>),
+        to: &(Vec<DVec3>, Vec<[u32; 3]>),
+        reach: f64,
+    ) -> Option<f64> {
+        let [from, to] = [from, to].map(|(positions, triangles)| Surface { positions, triangles });
+        creases_recovered(from, to, reach, &mut |_, _| Ok(true), &Budget::unlimited()).unwrap()
+    }
+
+    #[test]
+    fn the_creases_of_a_cube_are_found_where_they_are_and_nowhere_else() {
+        let whole = cube(|p| p);
+        assert_eq!(share(&whole, &whole, 1e-9), Some(1.0));
+        assert_eq!(share(&whole, &cube(|p| p * 1.01), 0.02), Some(1.0));
+        assert_eq!(share(&whole, &cube(|p| p * 1.01), 0.005), Some(0.0));
+        // Of the four edges at the top that are higher, and the others, which go on to there.
+        let taller = cube(|p| if p.z > 0.0 { p + DVec3::Z } else { p });
+        let found = share(&whole, &taller, 0.05).unwrap();
+        assert!((found - 8.0 / 12.0).abs() < 0.02, "{found}");
+        // All turned by 30 degrees, so that only those along the axis of the turn go the same way, and are elsewhere.
+        let turned = cube(|p| DVec3::new(p.x * FOLDED - p.y * 0.5, p.x * 0.5 + p.y * FOLDED, p.z));
+        assert_eq!(share(&whole, &turned, 0.1), Some(0.0));
+        // One face of two triangles has no crease.
+        assert_eq!(share(&(whole.0.clone(), whole.1[..2].to_vec()), &whole, 1.0), None);
+        // Nor does it matter which way triangles run.
+        let mixed = (
+            whole.0.clone(),
+            whole
+                .1
+                .iter()
+                .enumerate()
+                .map(|(n, &[a, b, c])| if n % 3 == 0 { [a, c, b] } else { [a, b, c] })
+                .collect(),
+        );
+        assert_eq!(share(&mixed, &whole, 1e-9), Some(1.0));
+    }
+
+    #[test]
+    fn what_does_not_count_is_left_out() {
+        let whole = cube(|p| p);
+        let half = (whole.0.clone(), whole.1[..8].to_vec());
+        let [from, to] = [&whole, &half].map(|(positions, triangles)| Surface { positions, triangles });
+        let only = |is_counted: &dyn Fn(DVec3) -> bool| {
+            creases_recovered(from, to, 1e-9, &mut |place, _| Ok(is_counted(place)), &Budget::unlimited())
+                .unwrap()
+        };
+        // Without the faces toward -x and +x, the four edges along x stay.
+        let along_x = |p: DVec3| p.x.abs() < 0.99;
+        assert_eq!(only(&along_x), Some(1.0));
+        assert_eq!(only(&|p| !along_x(p) && p.x.abs() <= 1.0 && p.y.abs() < 0.99), Some(0.0));
+        assert_eq!(only(&|_| false), None);
+    }
+}

@@ -121,8 +121,14 @@ impl FidelityVerdict {
 }
 
 /// Nothing is lost or invented.
-pub(super) const NO_LOSSES: Losses =
-    Losses { visible_loss: 0.0, hidden_area: 0.0, invented: 0.0, bodies_lost: 0, volume_change: None, creases_recovered: None };
+pub(super) const NO_LOSSES: Losses = Losses {
+    visible_loss: 0.0,
+    hidden_area: 0.0,
+    invented: 0.0,
+    bodies_lost: 0,
+    volume_change: None,
+    creases_recovered: None,
+};
 
 /// Judges `result`, made from `input`; `origins` name the triangle behind each of its own ([`NEW`]: none). What `report`
 /// measured is used; what it lacks is measured where it matters, and added.

@@ -169,7 +169,8 @@ pub fn wrap(
     let wall = wall_of(options, bounds, &lattice);
     let signs = Signs::decide(&lattice, &surface, wall, budget)?;
     account.thin_triangles = signs.thin.len() as u64;
-    let area = |triangles: &[[DVec3; 3]]| triangles.iter().map(|&corners| triangle_area(corners)).sum::<f64>();
+    let area =
+        |triangles: &[[DVec3; 3]]| triangles.iter().map(|&corners| triangle_area(corners)).sum::<f64>();
     account.thin_share = (area(&signs.thin) / area(&surface.corners)).min(1.0);
     account.own = signs.own;
     let patches = tetrahedra::march(&lattice, &signs, budget)?;

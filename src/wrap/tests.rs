@@ -110,6 +110,23 @@ fn a_plate_thinner_than_a_cell_is_not_lost() {
     assert_eq!(certificate.shells[0].genus, 0);
 }
 
+#[test]
+fn thin_plates_keep_their_volume_however_they_lie_in_the_lattice() {
+    for (n, share) in [0.125, 0.25, 0.4, 0.6, 0.8, 1.1].into_iter().enumerate() {
+        for turn in [0.0, 0.3, 0.7] {
+            // A side of 10 has 32 cells.
+            let thickness = share * 10.0 / 32.0;
+            let (positions, triangles) = cuboid([0.0; 3], [10.0, 8.0, thickness]);
+            let turned = glam::DQuat::from_axis_angle(DVec3::new(0.6, 0.48, 0.64), turn + n as f64 * 0.1);
+            let positions: Vec<DVec3> = positions.into_iter().map(|p| turned * p).collect();
+            let (wrap, certificate) = wrapped(&positions, &triangles, 32);
+            assert_eq!((certificate.shells.len(), certificate.shells[0].genus), (1, 0), "{share} {turn}");
+            let volume = certificate.shells[0].volume / (80.0 * thickness);
+            println!("{share} {turn} {volume} {:?}", wrap.account.fit);
+        }
+    }
+}
+
 /// A linear congruential generator (Knuth's multiplier): signs need no better.
 struct Random(u64);
 

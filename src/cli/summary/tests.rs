@@ -71,11 +71,17 @@ fn quarter_away() -> SurfaceDistance {
 fn a_measured_repair_tells_how_close_it_is() {
     let mut answer = sample::repaired();
     assert!(!of(&answer, None).contains("from the file"));
-    let losses =
-        Losses { visible_loss: 0.012, hidden_area: 2.5, invented: 0.0, bodies_lost: 1, volume_change: None, creases_recovered: Some(0.97) };
-    answer.report.losses = Some(losses);
+    answer.report.losses = Some(Losses {
+        visible_loss: 0.012,
+        hidden_area: 2.5,
+        invented: 0.0,
+        bodies_lost: 1,
+        volume_change: None,
+        creases_recovered: Some(0.97),
+    });
     answer.report.distance = Some(quarter_away());
-    let want = "  at most 0.25 mm from the file; 1.2 % of the visible surface lost; hidden area 2.5 mm² left out; bodies lost: 1\n";
+    let want = "  at most 0.25 mm from the file; 1.2 % of the visible surface lost; hidden area 2.5 mm² left out; bodies lost: 1; \
+                97 % of the creases recovered\n";
     let text = of(&answer, None);
     assert!(text.contains(want), "{text}");
 }

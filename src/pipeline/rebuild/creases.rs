@@ -24,8 +24,8 @@ pub(super) fn recovered(
         let seen = original.first_visible(&mut std::iter::once(place), triangle, &mut nearby, budget)?;
         Ok(seen.is_some())
     };
-    let [from, to] =
-        [original.input, result].map(|mesh| Surface { positions: &mesh.positions, triangles: &mesh.triangles });
+    let [from, to] = [original.input, result]
+        .map(|mesh| Surface { positions: &mesh.positions, triangles: &mesh.triangles });
     let search = || creases_recovered(from, to, REACH * spacing, &mut is_seen, budget);
     Ok(budget.within_part(4, || budget.stage(Stage::Measure, search))?.flatten())
 }

@@ -102,7 +102,10 @@ fn plain_goals(
             let (cut, place) = (&cuts[v], places[v]);
             if cut.triangle != NONE {
                 let is_clamped = cut.point.distance_squared(place) > 1e-6;
-                return Ok((is_clamped.then_some(cut.point), Some((cut.point, surface.normal(cut.triangle)))));
+                return Ok((
+                    is_clamped.then_some(cut.point),
+                    Some((cut.point, surface.normal(cut.triangle))),
+                ));
             }
             match cut.why {
                 Inside::NearSheet => Ok((behind_sheet(&sheets, signs.wall, place, budget)?, None)),
@@ -129,7 +132,12 @@ fn behind_sheet(
 }
 
 /// The place on a thin wall that a vertex before it grew from, and the normal there.
-fn onto_thin(thin: &NearestSearch<'_>, place: DVec3, why: Inside, budget: &Budget) -> Result<Option<Plane>, Stopped> {
+fn onto_thin(
+    thin: &NearestSearch<'_>,
+    place: DVec3,
+    why: Inside,
+    budget: &Budget,
+) -> Result<Option<Plane>, Stopped> {
     let Some(nearest) = thin.find(place, None, budget)? else { return Ok(None) };
     let [a, b, c] = thin.corners(nearest.triangle);
     let normal = (b - a).cross(c - a).normalize_or_zero();

@@ -107,7 +107,8 @@ impl Moves<'_> {
             bad.retain(|&v| positions[v as usize] != before[v as usize]);
             for v in bad.iter().map(|&v| v as usize) {
                 let share = shares.get(usize::from(times[v])).filter(|_| round < ROUNDS_NEAR);
-                positions[v] = share.map_or(before[v], |&share| self.nearest(ahead[v].lerp(before[v], share)));
+                positions[v] =
+                    share.map_or(before[v], |&share| self.nearest(ahead[v].lerp(before[v], share)));
                 times[v] += 1;
             }
             // After a search for contacts only triangles around a vertex that went back since can have begun to meet others.
@@ -202,11 +203,7 @@ fn flat(
 }
 
 /// Triangles that meet others.
-fn everywhere(
-    positions: &[DVec3],
-    triangles: &[[u32; 3]],
-    budget: &Budget,
-) -> Result<Vec<u32>, Stopped> {
+fn everywhere(positions: &[DVec3], triangles: &[[u32; 3]], budget: &Budget) -> Result<Vec<u32>, Stopped> {
     let bvh = Bvh::build(positions, triangles, None, budget)?;
     let search = Search::All { keep: CONTACTS };
     // The surface is closed: every edge has its two triangles.
@@ -261,8 +258,14 @@ mod tests {
         let stars = Stars::of(&triangles, 8, &budget).unwrap();
         let lattice = Lattice::around(Aabb::of(before.iter().copied()), 64, usize::MAX).unwrap();
         let moved = |goals: &[DVec3]| {
-            let moves =
-                Moves { before: &before, goals, triangles: &triangles, stars: &stars, lattice: &lattice, budget: &budget };
+            let moves = Moves {
+                before: &before,
+                goals,
+                triangles: &triangles,
+                stars: &stars,
+                lattice: &lattice,
+                budget: &budget,
+            };
             let settled = moves.without_contacts().unwrap();
             assert!(everywhere(&settled, &triangles, &budget).unwrap().is_empty());
             settled

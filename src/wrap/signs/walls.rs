@@ -107,7 +107,9 @@ impl Signs<'_> {
                 .collect::<Result<Vec<bool>, Stopped>>()
         })?;
         let mut is_any = false;
-        for (&(cube, ..), _) in places.iter().zip(is_thin.into_iter().flatten()).filter(|(_, is_thin)| *is_thin) {
+        for (&(cube, ..), _) in
+            places.iter().zip(is_thin.into_iter().flatten()).filter(|(_, is_thin)| *is_thin)
+        {
             self.state[cube] |= GROWING;
             is_any = true;
         }
