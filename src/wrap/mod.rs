@@ -93,10 +93,8 @@ pub struct Account {
     pub open_parts: u32,
     /// Open parts that became walls.
     pub sheet_parts: u32,
-    /// Triangles of walls thinner than a cube, which grew.
+    /// Triangles of walls that grew because they are thinner than about two cubes.
     pub thin_triangles: u64,
-    /// Share of the area of the input that such triangles are, from 0 to 1.
-    pub thin_share: f64,
     /// Thickness of the walls that sheets became, in the unit of the input.
     pub wall: f64,
     /// How clearly open parts bound a volume: 1 for a closed shell, 0 for a flat sheet. `None`: there are none.
@@ -159,7 +157,6 @@ pub fn wrap(
         open_parts: shells.parts[1],
         sheet_parts: shells.parts[2],
         thin_triangles: 0,
-        thin_share: 0.0,
         wall: wall_of(options, bounds, &lattice) * lattice.side(),
         closedness: shells.closedness,
         own: OwnDefects::default(),
@@ -169,9 +166,6 @@ pub fn wrap(
     let wall = wall_of(options, bounds, &lattice);
     let signs = Signs::decide(&lattice, &surface, wall, budget)?;
     account.thin_triangles = signs.thin.len() as u64;
-    let area =
-        |triangles: &[[DVec3; 3]]| triangles.iter().map(|&corners| triangle_area(corners)).sum::<f64>();
-    account.thin_share = (area(&signs.thin) / area(&surface.corners)).min(1.0);
     account.own = signs.own;
     let patches = tetrahedra::march(&lattice, &signs, budget)?;
     let cuts = cut::cuts(&lattice, &signs, &surface, &patches.edges, budget)?;

@@ -134,15 +134,42 @@ impl InputSurface {
         most: f64,
         budget: &Budget,
     ) -> Result<Option<f64>, Stopped> {
+        self.next_boundary(point, inward, most, true, budget)
+    }
+
+    /// How wide the gap before a point of the surface of the solid is, if less than `most`: how far it is `outward`, a unit vector,
+    /// to where the solid begins again.
+    pub(super) fn gap(
+        &self,
+        point: DVec3,
+        outward: DVec3,
+        most: f64,
+        budget: &Budget,
+    ) -> Result<Option<f64>, Stopped> {
+        self.next_boundary(point, outward, most, false, budget)
+    }
+
+    /// How far it is from a point of the surface to the boundary that is an exit, or else an entry, and not of a body that is
+    /// entered, or else left, on the way.
+    fn next_boundary(
+        &self,
+        point: DVec3,
+        along: DVec3,
+        most: f64,
+        is_exit: bool,
+        budget: &Budget,
+    ) -> Result<Option<f64>, Stopped> {
         let mut found = Vec::new();
-        self.crossings(point, point + inward * most, budget, &mut found)?;
-        found.retain(|hit| self.says(hit.triangle) == Says::Boundary && (hit.is_exit || hit.share > 1e-6));
+        self.crossings(point, point + along * most, budget, &mut found)?;
+        // The triangles that the point is on are passed the other way.
+        let is_own = |hit: &SegmentHit| hit.share <= AT_ONE_PLACE && hit.is_exit != is_exit;
+        found.retain(|hit| self.says(hit.triangle) == Says::Boundary && !is_own(hit));
         found.sort_by(|a, b| a.share.total_cmp(&b.share));
-        let mut depth = 1;
-        for at_one_place in found.chunk_by(|a, b| b.share - a.share < 1e-6) {
-            depth += at_one_place.iter().map(|hit| if hit.is_exit { -1 } else { 1 }).sum::<i32>();
-            if depth <= 0 {
-                return Ok(Some(at_one_place[0].share * most));
+        let mut passed = 0;
+        for hits in found.chunk_by(|a, b| b.share - a.share < AT_ONE_PLACE) {
+            passed += hits.iter().map(|hit| if hit.is_exit == is_exit { 1 } else { -1 }).sum::<i32>();
+            if passed > 0 {
+                return Ok(Some(hits[0].share * most));
             }
         }
         Ok(None)
@@ -170,6 +197,9 @@ impl InputSurface {
 pub(super) fn separate(count: usize) -> Vec<[u32; 3]> {
     (0..count as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect()
 }
+
+/// Crossings whose shares of a segment differ by less are at one place.
+const AT_ONE_PLACE: f64 = 1e-6;
 
 /// What rounding may hide at the edges of a triangle, in lattice units.
 const SLACK: f64 = 1e-9;

@@ -10,7 +10,7 @@ pub use self::effort::Effort;
 
 use self::effort::coarser_than;
 use self::fewer::WrapReduction;
-use super::fidelity::{FidelityMeasurement, LOSS_MAX, Original, defined_volume};
+use super::fidelity::{FidelityMeasurement, Original, defined_volume};
 use super::input::Input;
 use super::output::{Candidate, NoCandidate};
 use super::plan::{Attempt, Variant};
@@ -59,9 +59,6 @@ const CAUSES: [DefectCode; 9] = [
     DefectCode::Touch,
     DefectCode::MisnestedShell,
 ];
-
-/// Where thin walls have more than this share of the area, a finer lattice is tried for what they are too thick.
-const THIN_SHARE: f64 = 0.1;
 
 /// A certified mesh, how it came to be, and how far it is from the input.
 pub(super) struct Rebuilt {
@@ -204,8 +201,6 @@ impl LatticeSearch<'_> {
             cells_before = made.account.cells;
             let fidelity =
                 original.measure(made.candidate.soup(), &made.candidate.origins(&made.origins), budget)?;
-            // Thin walls that the cells are too large for become too thick.
-            let is_coarse = made.account.thin_share > THIN_SHARE && fidelity.losses.invented > LOSS_MAX;
             let is_better = |best: &Rebuilt| !best.fidelity.is_no_worse(&fidelity, limits);
             if best.as_ref().is_none_or(is_better) {
                 let wrap = action(&made, choices.open_shells, self.before);
@@ -214,7 +209,7 @@ impl LatticeSearch<'_> {
                 let spacing = account.spacing;
                 best = Some(Rebuilt { candidate, origins, fidelity, spacing, as_seen: fidelity, actions });
             }
-            if fidelity.passes(limits) && !is_coarse || is_coarser {
+            if fidelity.passes(limits) || is_coarser {
                 break;
             }
         }

@@ -15,7 +15,7 @@ const SHARES_BACK: [f64; 4] = [1.0 / 16.0, 1.0 / 8.0, 1.0 / 4.0, 1.0 / 2.0];
 const ROUNDS_NEAR: usize = 8;
 
 /// Rounds before everything goes back.
-const ROUNDS: usize = 13;
+const ROUNDS: usize = 20;
 
 /// Times that half of the vertices that went back try again to come nearer to where they belong.
 const ATTEMPTS: u32 = 8;
@@ -46,7 +46,9 @@ impl Moves<'_> {
     pub(super) fn without_contacts(&self) -> Result<Vec<DVec3>, Stopped> {
         let swept = self.swept_boxes()?;
         let mut positions = self.goals.to_vec();
-        self.take_back(&mut positions, self.before, &SHARES_BACK, None, &swept)?;
+        if !self.take_back(&mut positions, self.before, &SHARES_BACK, None, &swept)? {
+            return Ok(positions);
+        }
         for attempt in 0..ATTEMPTS {
             let settled = positions.clone();
             let mut tried = Vec::new();
@@ -59,7 +61,9 @@ impl Moves<'_> {
                 }
             }
             let changed = sorted_around(&tried, self.stars);
-            self.take_back(&mut positions, &settled, &[], Some(changed), &swept)?;
+            if !self.take_back(&mut positions, &settled, &[], Some(changed), &swept)? {
+                break;
+            }
         }
         Ok(positions)
     }
@@ -82,7 +86,7 @@ impl Moves<'_> {
     }
 
     /// Moves vertices from `positions` back to `before`, where nothing meets, by these shares one after the other and then all
-    /// the way, until nothing meets. Where `changed` names triangles, all others are as `before`.
+    /// the way, until nothing meets. Where `changed` names triangles, all others are as `before`. False: everything went back.
     fn take_back(
         &self,
         positions: &mut [DVec3],
@@ -90,14 +94,14 @@ impl Moves<'_> {
         shares: &[f64],
         mut changed: Option<Vec<u32>>,
         swept: &Bvh,
-    ) -> Result<(), Stopped> {
+    ) -> Result<bool, Stopped> {
         let ahead = positions.to_vec();
         let mut times = vec![0u8; positions.len()];
         for round in 0..ROUNDS {
             let Offenders { vertices: mut bad, are_contacts } =
                 self.offenders(positions, changed.as_deref(), swept)?;
             if bad.is_empty() {
-                return Ok(());
+                return Ok(true);
             }
             for _ in ROUNDS_NEAR..=round {
                 bad = around(&bad, self.stars).flat_map(|t| self.triangles[t as usize]).collect();
@@ -121,10 +125,11 @@ impl Moves<'_> {
                 changed = Some(now);
             }
         }
-        if !self.offenders(positions, None, swept)?.vertices.is_empty() {
+        let is_settled = self.offenders(positions, None, swept)?.vertices.is_empty();
+        if !is_settled {
             positions.copy_from_slice(before);
         }
-        Ok(())
+        Ok(is_settled)
     }
 
     /// What breaks P0 or P1 `among` these triangles and all others, or everywhere.

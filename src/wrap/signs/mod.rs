@@ -41,6 +41,9 @@ const LISTED: u8 = 64;
 /// Walls grow in the cube above this vertex.
 const GROWING: u8 = 128;
 
+/// Width in cells to which a gap between walls that grow is left open, for the same reason.
+const GAP: f64 = SLAB;
+
 /// Why a vertex is inside.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Inside {
@@ -80,7 +83,7 @@ pub(super) struct Signs<'l> {
     closed: Vec<i8>,
     /// The cones, turned around.
     open: WindingTree,
-    /// Triangles of walls thinner than a cell.
+    /// Triangles of walls that grew.
     pub(super) thin: Vec<[DVec3; 3]>,
     /// What the lattice made itself and what was taken away again.
     pub(super) own: OwnDefects,

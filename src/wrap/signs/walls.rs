@@ -64,10 +64,18 @@ impl Signs<'_> {
             Why::IsThin => {
                 let away = place - nearest.point;
                 let normal = normal_of(search.corners(nearest.triangle));
-                // From the front inward; what is behind is in the solid, or where all but nothing is.
-                let inward = if normal.dot(away) > BESIDE { -away.normalize_or_zero() } else { -normal };
-                let thickness = surface.thickness(nearest.point, inward, SLAB, budget)?;
-                Ok(thickness.is_some_and(|thickness| nearest.distance <= (SLAB - thickness) / 2.0))
+                // Behind the triangle it is in the solid, or where there is next to none.
+                let outward = if normal.dot(away) > BESIDE { away.normalize_or_zero() } else { normal };
+                let thickness = surface.thickness(nearest.point, -outward, SLAB, budget)?;
+                let Some(reach) = thickness.map(|thickness| (SLAB - thickness) / 2.0) else {
+                    return Ok(false);
+                };
+                if nearest.distance > reach {
+                    return Ok(false);
+                }
+                // A gap stays, where there is room.
+                let gap = surface.gap(nearest.point, outward, GAP + 2.0 * reach, budget)?;
+                Ok(gap.is_none_or(|gap| nearest.distance <= (gap - GAP) / 2.0))
             }
         };
         let corners: Vec<[DVec3; 3]> = thin.iter().map(|&t| surface.corners[t as usize]).collect();
@@ -101,17 +109,17 @@ impl Signs<'_> {
         let _charge = budget.charge(places.len() as u64 * 56)?;
         let is_thin = par::try_map_ranges(places.len(), 256, |range| {
             budget.spend(range.len() as u64 * 4)?;
-            places[range]
-                .iter()
-                .map(|&(_, place, inward)| Ok(surface.thickness(place, inward, SLAB, budget)?.is_some()))
-                .collect::<Result<Vec<bool>, Stopped>>()
+            let is_thin = |&(_, place, inward): &(usize, DVec3, DVec3)| {
+                Ok(surface.thickness(place, inward, SLAB, budget)?.is_some())
+            };
+            places[range].iter().map(is_thin).collect::<Result<Vec<bool>, Stopped>>()
         })?;
         let mut is_any = false;
-        for (&(cube, ..), _) in
-            places.iter().zip(is_thin.into_iter().flatten()).filter(|(_, is_thin)| *is_thin)
-        {
-            self.state[cube] |= GROWING;
-            is_any = true;
+        for (&(cube, ..), is_thin) in places.iter().zip(is_thin.into_iter().flatten()) {
+            if is_thin {
+                self.state[cube] |= GROWING;
+                is_any = true;
+            }
         }
         Ok(is_any)
     }
