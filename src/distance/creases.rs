@@ -6,7 +6,7 @@
 use super::Surface;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, DVec3};
-use crate::mesh::{EdgeGroups, edge_of, triangle_of};
+use crate::mesh::{EdgeGroups, edge_of, prev_corner, triangle_of};
 use crate::spatial::{Bvh, Coincident, coincident_f64};
 
 /// Cosine of the least angle between the normals at a crease: 30 degrees.
@@ -15,10 +15,13 @@ const FOLDED: f64 = 0.866_025_403_784_438_6;
 /// The same at an edge that stands for one, and of the greatest angle between the two: 20 degrees.
 const ABOUT: f64 = 0.939_692_620_785_908_4;
 
+/// How far beside a crease its triangles are looked at, as a share of the distance within which it is recovered.
+const BESIDE: f64 = 0.125;
+
 /// Samples along all creases together.
 const SAMPLES: usize = 1 << 13;
 
-/// The share of the length of the creases of `from`, where `counts` is true, that edges of `to` recover: folded by more than 20 degrees,
+/// The share of the length of the creases of `from`, where `counts` is true of a place beside it on either side, with the triangle that it is on, that edges of `to` recover: folded by more than 20 degrees,
 /// within `reach`, and at an angle of less than 20 degrees. `None`: nothing counts.
 ///
 /// # Errors
@@ -49,7 +52,9 @@ pub fn creases_recovered(
             budget.spend(1)?;
             let share = ((n as f64 + 0.5) * step - passed) / crease.length();
             let place = crease.ends[0].lerp(crease.ends[1], share.clamp(0.0, 1.0));
-            if !counts(place, crease.triangle)? {
+            if !counts(crease.beside(0, place, reach), crease.triangles[0])?
+                || !counts(crease.beside(1, place, reach), crease.triangles[1])?
+            {
                 continue;
             }
             seen += 1;
@@ -69,13 +74,21 @@ pub fn creases_recovered(
 #[derive(Debug, Clone, Copy)]
 struct Crease {
     ends: [DVec3; 2],
-    /// One of the triangles.
-    triangle: u32,
+    triangles: [u32; 2],
+    /// The corners of the triangles that are not on it.
+    apexes: [DVec3; 2],
 }
 
 impl Crease {
     fn length(&self) -> f64 {
         self.ends[0].distance(self.ends[1])
+    }
+
+    /// A place at most `BESIDE` times `reach` from one on the crease, on the first or second triangle.
+    fn beside(&self, side: usize, place: DVec3, reach: f64) -> DVec3 {
+        let way = self.apexes[side] - place;
+        let length = way.length();
+        if length == 0.0 { place } else { place + way * (reach * BESIDE / length).min(0.5) }
     }
 
     fn direction(&self) -> DVec3 {
@@ -117,7 +130,9 @@ fn creases(surface: Surface<'_>, fold_cos: f64, budget: &Budget) -> Result<Vec<C
         let is_flat = one == DVec3::ZERO || other == DVec3::ZERO;
         if from != to && !is_flat && one.dot(other) * turn < fold_cos {
             let ends = [from, to].map(|v| place(first[v as usize]));
-            creases.push(Crease { ends, triangle: triangle_of(g) });
+            let apexes = [g, h]
+                .map(|h| place(surface.triangles[triangle_of(h) as usize][prev_corner(h) as usize % 3]));
+            creases.push(Crease { ends, triangles: [g, h].map(triangle_of), apexes });
         }
     }
     Ok(creases)

@@ -161,10 +161,10 @@ pub struct Deviation {
     /// Bodies of the input that can be seen and are lost as a whole; null: not measured.
     #[schema(required)]
     pub bodies_lost: Option<u32>,
-    /// Share of the length of the creases of the input that can be seen, from 0 to 1, which a rebuilt surface has, too, by sampling.
-    /// A crease is an edge folded by more than 30 degrees. The result has it where, within an eighth of a cell of its lattice, an edge
-    /// folded by more than 20 degrees runs the same way to 20 degrees. Of several parts the least; null: nothing was rebuilt, or
-    /// there are no creases.
+    /// Share of the length of the creases of the input, from 0 to 1, which a rebuilt surface has, too, by sampling. A crease is an edge
+    /// folded by more than 30 degrees whose sides can both be seen. The result has it where, within an eighth of a cell of its lattice,
+    /// an edge folded by more than 20 degrees runs the same way to 20 degrees. Of several parts the least; null: nothing was rebuilt,
+    /// or there are no creases.
     #[schema(required)]
     pub creases_recovered: Option<f64>,
     /// Area of the patches of holes as a share of the surface, from 0 to 1, before its triangles are made fewer; null where `holes`

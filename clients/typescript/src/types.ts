@@ -662,10 +662,10 @@ export interface components {
             bodies_lost: number | null;
             /**
              * Format: double
-             * @description Share of the length of the creases of the input that can be seen, from 0 to 1, which a rebuilt surface has, too, by sampling.
-             *     A crease is an edge folded by more than 30 degrees. The result has it where, within an eighth of a cell of its lattice, an edge
-             *     folded by more than 20 degrees runs the same way to 20 degrees. Of several parts the least; null: nothing was rebuilt, or
-             *     there are no creases.
+             * @description Share of the length of the creases of the input, from 0 to 1, which a rebuilt surface has, too, by sampling. A crease is an edge
+             *     folded by more than 30 degrees whose sides can both be seen. The result has it where, within an eighth of a cell of its lattice,
+             *     an edge folded by more than 20 degrees runs the same way to 20 degrees. Of several parts the least; null: nothing was rebuilt,
+             *     or there are no creases.
              */
             creases_recovered: number | null;
             /**
