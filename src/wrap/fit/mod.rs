@@ -24,10 +24,13 @@ const CREASE_COS: f64 = 0.866;
 
 /// A vertex farther than this from a crease, in cells, leaves it to its neighbours. Vertices are cut points of cell edges, so every
 /// place of a crease has one within half a cell across it; a tenth more covers cuts that were clamped.
-const CREASE_REACH: f64 = 0.6;
+const CREASE_REACH: f64 = 1.2;
 
 /// Times that vertices are moved toward their own goals.
 const PASSES: usize = 10;
+
+/// Times that vertices beside creases are moved toward them.
+const CREASE_PASSES: usize = 4;
 
 /// Weight that keeps the point near the middle of those around it where planes do not determine it.
 const HOLD: f64 = 1e-3;
@@ -68,7 +71,11 @@ pub(super) fn fit(
         moved.iter_mut().zip(&again).for_each(|(all, &one)| *all |= one);
     }
     let goals = crease_goals(&planes, &stars, triangles, &places, budget)?;
-    let onto = move_all(&stars, triangles, &mut places, &goals, budget)?;
+    let mut onto = move_all(&stars, triangles, &mut places, &goals, budget)?;
+    for _ in 1..CREASE_PASSES {
+        let again = move_all(&stars, triangles, &mut places, &goals, budget)?;
+        onto.iter_mut().zip(&again).for_each(|(all, &one)| *all |= one);
+    }
     moved.iter_mut().zip(&onto).for_each(|(all, &one)| *all |= one);
     let before = positions.to_vec();
     for (v, place) in places.iter().enumerate().filter(|&(v, _)| moved[v]) {
@@ -77,8 +84,8 @@ pub(super) fn fit(
     let moves = Moves { before: &before, goals: positions, triangles, stars: &stars, lattice, budget };
     let settled = moves.without_contacts()?;
     let taken_back = settled.iter().zip(&*positions).filter(|(settled, goal)| settled != goal).count() as u64;
-    positions.copy_from_slice(&settled);
     let count = |flags: &[bool]| flags.iter().filter(|&&flag| flag).count() as u64;
+    positions.copy_from_slice(&settled);
     Ok(FitCounts { moved: count(&moved), onto_creases: count(&onto), taken_back })
 }
 
