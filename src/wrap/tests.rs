@@ -4,6 +4,7 @@ use super::*;
 use crate::certificate::{self, Certificate, Depth};
 use crate::formats::{self, Encoding, ReadOptions};
 use crate::mesh::Soup;
+use crate::spatial::NearestSearch;
 
 pub(super) fn certificate_of(positions: &[DVec3], triangles: &[[u32; 3]]) -> Certificate {
     let soup = Soup {
@@ -124,6 +125,29 @@ fn thin_plates_keep_their_volume_however_they_lie_in_the_lattice() {
             let volume = certificate.shells[0].volume / (80.0 * thickness);
             assert!((0.98..1.02).contains(&volume), "{share} {turn}: {volume} {:?}", wrap.account);
         }
+    }
+}
+
+#[test]
+fn creases_are_where_they_belong_wherever_they_go_through_cells() {
+    for n in 0..8 {
+        // The second box lies in the lattice of the first one, a little farther each time.
+        let mut mesh = cuboid([0.0; 3], [10.0, 4.0, 4.0]);
+        let low = [0.0, 6.0, 0.0].map(|x| x + f64::from(n) * 0.037);
+        let box_beside = cuboid(low, low.map(|x| x + 3.0));
+        add(&mut mesh, &box_beside, false);
+        let (wrap, _) = wrapped(&mesh.0, &mesh.1, 32);
+        let search = NearestSearch::build(&wrap.positions, &wrap.triangles, &Budget::unlimited()).unwrap();
+        let (mut far, mut all) = (0, 0);
+        for (a, b) in (0..8).flat_map(|a| [1, 2, 4].map(|bit| (a, a | bit))).filter(|(a, b)| a != b) {
+            for k in 0..60 {
+                let place = box_beside.0[a].lerp(box_beside.0[b], (f64::from(k) + 0.5) / 60.0);
+                let nearest = search.find(place, None, &Budget::unlimited()).unwrap().unwrap();
+                all += 1;
+                far += u32::from(nearest.distance > 0.05 * wrap.account.spacing);
+            }
+        }
+        assert!(far * 50 <= all, "{n}: {far} of {all}");
     }
 }
 

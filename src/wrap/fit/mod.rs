@@ -22,14 +22,14 @@ use undo::Moves;
 /// Normals around a vertex that differ by more than 30 degrees make it a vertex beside a crease.
 const CREASE_COS: f64 = 0.866;
 
-/// A vertex farther than this from a crease, in cells, leaves it to its neighbours. Vertices are cut points of cell edges, so every
-/// place of a crease has one within half a cell across it; a tenth more covers cuts that were clamped.
+/// A vertex farther than this from a crease, in cells, leaves it to its neighbours. A crease that goes through a cell near a vertex of the
+/// lattice has cuts on all sides that are up to 7/8 of a cell away, and cuts that were clamped are farther.
 const CREASE_REACH: f64 = 1.2;
 
 /// Times that vertices are moved toward their own goals.
 const PASSES: usize = 10;
 
-/// Times that vertices beside creases are moved toward them.
+/// Times that vertices beside creases are moved toward them: some can only after their neighbours.
 const CREASE_PASSES: usize = 4;
 
 /// Weight that keeps the point near the middle of those around it where planes do not determine it.
