@@ -3,7 +3,7 @@
 //! A vertex whose cut was clamped goes to the point of the input that it stands for; one beside a crease to the point
 //! that is nearest to the planes of the input around it (a quadratic error function, as in Kobbelt et al. 2001 and Ju et
 //! al. 2002); one that grew from a thin wall back to that wall; one behind a sheet to the thickness of walls. A move must not
-//! turn a triangle around, and what then meets anything is taken back, until nothing does.
+//! turn a triangle around, and what then meets anything goes back step by step, until nothing does.
 
 mod normals;
 mod undo;
@@ -59,7 +59,7 @@ pub(super) fn fit(
     triangles: &[[u32; 3]],
     budget: &Budget,
 ) -> Result<FitCounts, Stopped> {
-    let _charge = budget.charge(positions.len() as u64 * 64 + triangles.len() as u64 * 16)?;
+    let _charge = budget.charge(positions.len() as u64 * 240 + triangles.len() as u64 * 16)?;
     let stars = Stars::of(triangles, positions.len(), budget)?;
     let mut places: Vec<DVec3> = positions.iter().map(|&p| lattice.units_of(p)).collect();
     // Clamped cuts, and thin walls.

@@ -44,12 +44,15 @@ impl Moves<'_> {
     /// # Errors
     /// When the budget stops the run.
     pub(super) fn without_contacts(&self) -> Result<Vec<DVec3>, Stopped> {
-        let swept = self.swept_boxes()?;
+        let mut swept = None;
         let mut positions = self.goals.to_vec();
-        if !self.take_back(&mut positions, self.before, &SHARES_BACK, None, &swept)? {
+        if !self.take_back(&mut positions, self.before, &SHARES_BACK, None, &mut swept)? {
             return Ok(positions);
         }
         for attempt in 0..ATTEMPTS {
+            if positions == self.goals {
+                break;
+            }
             let settled = positions.clone();
             let mut tried = Vec::new();
             for (v, position) in positions.iter_mut().enumerate() {
@@ -61,7 +64,7 @@ impl Moves<'_> {
                 }
             }
             let changed = sorted_around(&tried, self.stars);
-            if !self.take_back(&mut positions, &settled, &[], Some(changed), &swept)? {
+            if !self.take_back(&mut positions, &settled, &[], Some(changed), &mut swept)? {
                 break;
             }
         }
@@ -79,6 +82,7 @@ impl Moves<'_> {
             let bounds = Aabb::of(ends.into_iter().flatten());
             [bounds.min, bounds.max]
         };
+        let _charge = self.budget.charge(self.triangles.len() as u64 * 60)?;
         let ends: Vec<DVec3> = self.triangles.iter().flat_map(bounds).collect();
         let names: Vec<[u32; 3]> =
             (0..self.triangles.len() as u32).map(|t| [2 * t, 2 * t + 1, 2 * t + 1]).collect();
@@ -93,7 +97,7 @@ impl Moves<'_> {
         before: &[DVec3],
         shares: &[f64],
         mut changed: Option<Vec<u32>>,
-        swept: &Bvh,
+        swept: &mut Option<Bvh>,
     ) -> Result<bool, Stopped> {
         let ahead = positions.to_vec();
         let mut times = vec![0u8; positions.len()];
@@ -137,7 +141,7 @@ impl Moves<'_> {
         &self,
         positions: &[DVec3],
         among: Option<&[u32]>,
-        swept: &Bvh,
+        swept: &mut Option<Bvh>,
     ) -> Result<Offenders, Stopped> {
         let (triangles, budget) = (self.triangles, self.budget);
         let mut bad = at_one_place(positions, budget)?;
@@ -146,7 +150,13 @@ impl Moves<'_> {
         if are_contacts {
             let meeting = match among {
                 None => everywhere(positions, triangles, budget)?,
-                Some(among) => of_these(positions, triangles, among, swept, budget)?,
+                Some(among) => {
+                    let swept = match swept {
+                        Some(swept) => swept,
+                        None => swept.insert(self.swept_boxes()?),
+                    };
+                    of_these(positions, triangles, among, swept, budget)?
+                }
             };
             bad.extend(meeting.into_iter().flat_map(|t| triangles[t as usize]));
         }
