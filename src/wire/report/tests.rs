@@ -54,6 +54,7 @@ fn a_report_has_the_same_members_whatever_came_out() {
                 "hidden_area",
                 "invented",
                 "bodies_lost",
+                "creases_recovered",
                 "interpolated_area_share",
                 "identical_triangle_share"
             ]
