@@ -63,7 +63,8 @@ pub(super) fn fit(
     let stars = Stars::of(triangles, positions.len(), budget)?;
     let mut places: Vec<DVec3> = positions.iter().map(|&p| lattice.units_of(p)).collect();
     // Clamped cuts, and thin walls.
-    let (goals, planes) = plain_goals(signs, surface, cuts, &places, budget)?;
+    let belongs = plain_goals(signs, surface, cuts, &places, budget)?;
+    let (goals, planes): (Vec<_>, Vec<_>) = belongs.into_iter().map(|goal| (goal.place, goal.plane)).unzip();
     let mut moved = move_all(&stars, triangles, &mut places, &goals, budget)?;
     // Long ways, of walls that grew, are gone in steps, each with its neighbours.
     for _ in 1..PASSES {
@@ -92,14 +93,23 @@ pub(super) fn fit(
 /// A point of the input and the unit normal there.
 type Plane = (DVec3, DVec3);
 
-/// Where each vertex belongs by itself, and the plane of the input that it belongs to.
+/// Where a vertex belongs by itself.
+#[derive(Debug, Clone, Copy)]
+struct PlainGoal {
+    /// Unless it is there.
+    place: Option<DVec3>,
+    /// What of the input it belongs to.
+    plane: Option<Plane>,
+}
+
+/// Where each vertex belongs by itself.
 fn plain_goals(
     signs: &Signs<'_>,
     surface: &InputSurface,
     cuts: &[LatticeCut],
     places: &[DVec3],
     budget: &Budget,
-) -> Result<(Vec<Option<DVec3>>, Vec<Option<Plane>>), Stopped> {
+) -> Result<Vec<PlainGoal>, Stopped> {
     let (thin_names, sheet_names) = (separate(signs.thin.len()), separate(surface.sheets().len()));
     let thin = NearestSearch::build(signs.thin.as_flattened(), &thin_names, budget)?;
     let sheets = NearestSearch::build(surface.sheets().as_flattened(), &sheet_names, budget)?;
@@ -109,22 +119,23 @@ fn plain_goals(
             let (cut, place) = (&cuts[v], places[v]);
             if cut.triangle != NONE {
                 let is_clamped = cut.point.distance_squared(place) > 1e-6;
-                return Ok((
-                    is_clamped.then_some(cut.point),
-                    Some((cut.point, surface.normal(cut.triangle))),
-                ));
+                let plane = Some((cut.point, surface.normal(cut.triangle)));
+                return Ok(PlainGoal { place: is_clamped.then_some(cut.point), plane });
             }
             match cut.why {
-                Inside::NearSheet => Ok((behind_sheet(&sheets, signs.wall, place, budget)?, None)),
+                Inside::NearSheet => {
+                    let place = behind_sheet(&sheets, signs.wall, place, budget)?;
+                    Ok(PlainGoal { place, plane: None })
+                }
                 Inside::Wound | Inside::NearThin => {
                     let plane = onto_thin(&thin, place, cut.why, budget)?;
-                    Ok((plane.map(|(point, _)| point), plane))
+                    Ok(PlainGoal { place: plane.map(|(point, _)| point), plane })
                 }
             }
         };
         range.map(goal).collect::<Result<Vec<_>, Stopped>>()
     })?;
-    Ok(goals.concat().into_iter().unzip())
+    Ok(goals.concat())
 }
 
 /// The place at the thickness of a `wall` from the sheet.
