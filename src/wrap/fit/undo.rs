@@ -7,18 +7,36 @@ use crate::geom::{Aabb, DVec3, Shared, ThreePointPlane, are_collinear, contact};
 use crate::par;
 use crate::spatial::{self, Bvh, Search, Terrains, coincident_f64};
 
-/// How far a vertex goes back each time that what it belongs to meets something, as shares of its move: what all but passes is
-/// about as near to the input as if it had not gone back.
-const SHARES_BACK: [f64; 4] = [1.0 / 16.0, 1.0 / 8.0, 1.0 / 4.0, 1.0 / 2.0];
+/// All the way back, in the parts of a way that are counted.
+const ALL: u8 = 64;
 
-/// Rounds in which only the vertices of what meets go back.
-const ROUNDS_NEAR: usize = 8;
+/// How vertices go back.
+struct Back {
+    /// How far in all, of [`ALL`], a vertex has gone back after each time that what it belongs to meets something.
+    steps: &'static [u8],
+    /// How much less far than a vertex those beside it go back at least, each for [`ROUNDS`] rounds.
+    less_beside: &'static [u8],
+}
 
-/// Rounds before everything goes back.
-const ROUNDS: usize = 20;
+/// What all but passes is about as near to the input as if it had not gone back. Where a part of the surface went back and what is
+/// beside it did not, triangles between them meet others, so that what does not settle is smoothed ever more widely.
+const SETTLING: Back = Back {
+    steps: &[ALL / 16, ALL / 8, ALL / 4, ALL / 2, ALL],
+    less_beside: &[ALL / 4, ALL / 8, ALL / 16, ALL / 32, ALL / 64, 0],
+};
 
-/// Times that half of the vertices that went back try again to come nearer to where they belong.
+/// A vertex whose try to come nearer fails is where it was.
+const TRYING: Back = Back { steps: &[ALL], less_beside: &[ALL] };
+
+/// Rounds before those beside go back farther, or everything does.
+const ROUNDS: usize = 8;
+
+/// Times that half of the vertices that went back try to come nearer to where they belong.
 const ATTEMPTS: u32 = 8;
+
+/// Shares of what is missing that a vertex tries to come nearer by: the next one after each time that something was in its way, and
+/// after the last one no more.
+const NEARER: [f64; 3] = [1.0, 0.5, 0.25];
 
 /// Contacts to take back in a round.
 const CONTACTS: usize = 1 << 20;
@@ -38,34 +56,41 @@ pub(super) struct Moves<'m> {
 
 impl Moves<'_> {
     /// Positions as near to the goals as nothing meets and no triangle is without area. Where something does, vertices go back a
-    /// part of their way, those of triangles that meet or have no area and then ever more around them, until nothing does; then
-    /// half of those that went back try half of what is missing, and the other half, and so on.
+    /// part of their way, those of triangles that meet or have no area and some around them, until nothing does; then half of those
+    /// that went back try to come nearer again, and the other half, and so on.
     ///
     /// # Errors
     /// When the budget stops the run.
     pub(super) fn without_contacts(&self) -> Result<Vec<DVec3>, Stopped> {
-        let mut swept = None;
+        let mut known = None;
         let mut positions = self.goals.to_vec();
-        if !self.take_back(&mut positions, self.before, &SHARES_BACK, None, &mut swept)? {
+        if !self.take_back(&mut positions, self.before, &SETTLING, None, &mut known)? {
             return Ok(positions);
         }
+        let mut failures = vec![0u8; positions.len()];
         for attempt in 0..ATTEMPTS {
-            if positions == self.goals {
-                break;
-            }
             let settled = positions.clone();
             let mut tried = Vec::new();
             for (v, position) in positions.iter_mut().enumerate() {
                 // Two that are in each other's way rarely try at the same time.
                 let has_turn = (v as u32).wrapping_mul(0x9e37_79b9) >> 31 == attempt & 1;
-                if has_turn && *position != self.goals[v] {
-                    *position = self.nearest(position.lerp(self.goals[v], 0.5));
+                if has_turn
+                    && *position != self.goals[v]
+                    && let Some(&share) = NEARER.get(usize::from(failures[v]))
+                {
+                    *position = self.nearest(position.lerp(self.goals[v], share));
                     tried.push(v as u32);
                 }
             }
+            if tried.is_empty() {
+                continue;
+            }
             let changed = sorted_around(&tried, self.stars);
-            if !self.take_back(&mut positions, &settled, &[], Some(changed), &mut swept)? {
+            if !self.take_back(&mut positions, &settled, &TRYING, Some(changed), &mut known)? {
                 break;
+            }
+            for v in tried.into_iter().map(|v| v as usize) {
+                failures[v] += u8::from(positions[v] == settled[v]);
             }
         }
         Ok(positions)
@@ -75,65 +100,72 @@ impl Moves<'_> {
         self.lattice.nearest(self.lattice.units_of(place))
     }
 
-    /// A search structure with a box around each triangle wherever its corners may be on their ways.
-    fn swept_boxes(&self) -> Result<Bvh, Stopped> {
-        let bounds = |t: &[u32; 3]| {
-            let ends = t.map(|v| [self.before[v as usize], self.goals[v as usize]]);
-            let bounds = Aabb::of(ends.into_iter().flatten());
-            [bounds.min, bounds.max]
-        };
-        let _charge = self.budget.charge(self.triangles.len() as u64 * 60)?;
-        let ends: Vec<DVec3> = self.triangles.iter().flat_map(bounds).collect();
-        let names: Vec<[u32; 3]> =
-            (0..self.triangles.len() as u32).map(|t| [2 * t, 2 * t + 1, 2 * t + 1]).collect();
-        Bvh::build(&ends, &names, None, self.budget)
-    }
-
-    /// Moves vertices from `positions` back to `before`, where nothing meets, by these shares one after the other and then all
-    /// the way, until nothing meets. Where `changed` names triangles, all others are as `before`. False: everything went back.
+    /// Moves vertices from `positions` back to `before`, where nothing meets, until nothing does. Where `changed` names triangles, all others are as `before`. False: everything went back.
     fn take_back(
         &self,
         positions: &mut [DVec3],
         before: &[DVec3],
-        shares: &[f64],
+        back: &Back,
         mut changed: Option<Vec<u32>>,
-        swept: &mut Option<Bvh>,
+        known: &mut Option<Known>,
     ) -> Result<bool, Stopped> {
         let ahead = positions.to_vec();
-        let mut times = vec![0u8; positions.len()];
-        for round in 0..ROUNDS {
-            let Offenders { vertices: mut bad, are_contacts } =
-                self.offenders(positions, changed.as_deref(), swept)?;
+        let mut gone = vec![0u8; positions.len()];
+        for round in 0..ROUNDS * back.less_beside.len() {
+            let Offenders { vertices: bad, are_contacts } =
+                self.offenders(positions, changed.as_deref(), known)?;
             if bad.is_empty() {
                 return Ok(true);
             }
-            for _ in ROUNDS_NEAR..=round {
-                bad = around(&bad, self.stars).flat_map(|t| self.triangles[t as usize]).collect();
-                bad.sort_unstable();
-                bad.dedup();
-            }
-            bad.retain(|&v| positions[v as usize] != before[v as usize]);
-            for v in bad.iter().map(|&v| v as usize) {
-                let share = shares.get(usize::from(times[v])).filter(|_| round < ROUNDS_NEAR);
-                positions[v] =
-                    share.map_or(before[v], |&share| self.nearest(ahead[v].lerp(before[v], share)));
-                times[v] += 1;
+            let farther = self.gone_farther(&bad, back.steps, back.less_beside[round / ROUNDS], &mut gone);
+            for v in farther.iter().map(|&v| v as usize) {
+                positions[v] = match gone[v] {
+                    ALL => before[v],
+                    gone => self.nearest(ahead[v].lerp(before[v], f64::from(gone) / f64::from(ALL))),
+                };
             }
             // After a search for contacts only triangles around a vertex that went back since can have begun to meet others.
             if are_contacts || changed.is_some() {
                 let known = if are_contacts { None } else { changed.take() };
-                let mut now = sorted_around(&bad, self.stars);
+                let mut now = sorted_around(&farther, self.stars);
                 now.extend(known.into_iter().flatten());
                 now.sort_unstable();
                 now.dedup();
                 changed = Some(now);
             }
         }
-        let is_settled = self.offenders(positions, None, swept)?.vertices.is_empty();
+        let is_settled = self.offenders(positions, None, known)?.vertices.is_empty();
         if !is_settled {
             positions.copy_from_slice(before);
         }
         Ok(is_settled)
+    }
+
+    /// Has those of `bad` go back farther, each to the next of `steps`, and those around them to `less` than what they are beside;
+    /// gives the vertices that did.
+    fn gone_farther(&self, bad: &[u32], steps: &[u8], less: u8, gone: &mut [u8]) -> Vec<u32> {
+        let mut farther = Vec::new();
+        for &v in bad {
+            let gone = &mut gone[v as usize];
+            if let Some(&next) = steps.iter().find(|&next| next > gone) {
+                *gone = next;
+                farther.push(v);
+            }
+        }
+        let mut next = 0;
+        while let Some(&v) = farther.get(next) {
+            next += 1;
+            let least = gone[v as usize].saturating_sub(less);
+            for w in self.stars.of_vertex(v as usize).iter().flat_map(|&t| self.triangles[t as usize]) {
+                if gone[w as usize] < least {
+                    gone[w as usize] = least;
+                    farther.push(w);
+                }
+            }
+        }
+        farther.sort_unstable();
+        farther.dedup();
+        farther
     }
 
     /// What breaks P0 or P1 `among` these triangles and all others, or everywhere.
@@ -141,21 +173,23 @@ impl Moves<'_> {
         &self,
         positions: &[DVec3],
         among: Option<&[u32]>,
-        swept: &mut Option<Bvh>,
+        known: &mut Option<Known>,
     ) -> Result<Offenders, Stopped> {
         let (triangles, budget) = (self.triangles, self.budget);
-        let mut bad = at_one_place(positions, budget)?;
-        bad.extend(flat(positions, triangles, among, budget)?);
+        let mut bad = flat(positions, triangles, among, budget)?;
+        // Where only some triangles are looked at, those around vertices at one place meet.
+        if among.is_none() {
+            bad.extend(at_one_place(positions, budget)?);
+        }
         let are_contacts = bad.is_empty();
         if are_contacts {
-            let meeting = match among {
-                None => everywhere(positions, triangles, budget)?,
-                Some(among) => {
-                    let swept = match swept {
-                        Some(swept) => swept,
-                        None => swept.insert(self.swept_boxes()?),
-                    };
-                    of_these(positions, triangles, among, swept, budget)?
+            let meeting = match (among, &*known) {
+                (Some(among), Some(known)) => known.meeting(positions, triangles, among, budget)?,
+                _ => {
+                    let bvh = Bvh::build(positions, triangles, None, budget)?;
+                    let meeting = everywhere(positions, triangles, &bvh, budget)?;
+                    *known = Some(Known { positions: positions.to_vec(), bvh });
+                    meeting
                 }
             };
             bad.extend(meeting.into_iter().flat_map(|t| triangles[t as usize]));
@@ -163,6 +197,55 @@ impl Moves<'_> {
         bad.sort_unstable();
         bad.dedup();
         Ok(Offenders { vertices: bad, are_contacts })
+    }
+}
+
+/// A search structure of the triangles with these positions.
+struct Known {
+    positions: Vec<DVec3>,
+    bvh: Bvh,
+}
+
+impl Known {
+    /// Triangles that meet one of `these`, and those of these that do.
+    fn meeting(
+        &self,
+        positions: &[DVec3],
+        triangles: &[[u32; 3]],
+        these: &[u32],
+        budget: &Budget,
+    ) -> Result<Vec<u32>, Stopped> {
+        // Those that are elsewhere now have a search structure of their own.
+        let is_away = |v: &u32| positions[*v as usize] != self.positions[*v as usize];
+        let is_elsewhere: Vec<bool> = triangles.iter().map(|corners| corners.iter().any(is_away)).collect();
+        let elsewhere: Vec<u32> = (0..triangles.len() as u32).filter(|&t| is_elsewhere[t as usize]).collect();
+        let corners: Vec<[u32; 3]> = elsewhere.iter().map(|&t| triangles[t as usize]).collect();
+        let there = Bvh::build(positions, &corners, None, budget)?;
+        let found = par::try_map_ranges(these.len(), 256, |range| {
+            let mut found = Vec::new();
+            for &t in &these[range] {
+                let corners = triangles[t as usize];
+                let plane = ThreePointPlane::through(corners.map(|v| positions[v as usize]));
+                let bounds = Aabb::of(corners.map(|v| positions[v as usize]));
+                let mut compare = |other: u32| {
+                    let others = triangles[other as usize];
+                    let points = others.map(|v| &positions[v as usize]);
+                    let is_near = other != t && Aabb::of(points.map(|&p| p)).meets(bounds);
+                    if is_near && contact(&plane, points, Shared::between(corners, others)).is_some() {
+                        found.extend([t, other]);
+                    }
+                };
+                self.bvh.visit_box(bounds, budget, |other| {
+                    if !is_elsewhere[other as usize] {
+                        compare(other);
+                    }
+                })?;
+                there.visit_box(bounds, budget, |n| compare(elsewhere[n as usize]))?;
+            }
+            budget.spend(4)?;
+            Ok(found)
+        })?;
+        Ok(found.concat())
     }
 }
 
@@ -218,47 +301,101 @@ fn flat(
 }
 
 /// Triangles that meet others.
-fn everywhere(positions: &[DVec3], triangles: &[[u32; 3]], budget: &Budget) -> Result<Vec<u32>, Stopped> {
-    let bvh = Bvh::build(positions, triangles, None, budget)?;
-    let search = Search::All { keep: CONTACTS };
-    // The surface is closed: every edge has its two triangles.
-    let terrains = Terrains::find(positions, triangles, &[], budget)?;
-    let contacts = spatial::self_contacts(positions, triangles, &bvh, Some(&terrains), search, budget)?;
-    Ok(contacts.list.iter().flat_map(|contact| [contact.a, contact.b]).collect())
-}
-
-/// Triangles that meet one of `these`, and those of these that do.
-fn of_these(
+fn everywhere(
     positions: &[DVec3],
     triangles: &[[u32; 3]],
-    these: &[u32],
     bvh: &Bvh,
     budget: &Budget,
 ) -> Result<Vec<u32>, Stopped> {
-    let found = par::try_map_ranges(these.len(), 256, |range| {
-        let mut found = Vec::new();
-        for &t in &these[range] {
-            let corners = triangles[t as usize];
-            let plane = ThreePointPlane::through(corners.map(|v| positions[v as usize]));
-            let bounds = Aabb::of(corners.map(|v| positions[v as usize]));
-            bvh.visit_box(bounds, budget, |other| {
-                let others = triangles[other as usize];
-                let shared = Shared::between(corners, others);
-                let points = others.map(|v| &positions[v as usize]);
-                if other != t && contact(&plane, points, shared).is_some() {
-                    found.extend([t, other]);
-                }
-            })?;
-        }
-        budget.spend(4)?;
-        Ok(found)
-    })?;
-    Ok(found.concat())
+    let search = Search::All { keep: CONTACTS };
+    // The surface is closed: every edge has its two triangles.
+    let terrains = Terrains::find(positions, triangles, &[], budget)?;
+    let contacts = spatial::self_contacts(positions, triangles, bvh, Some(&terrains), search, budget)?;
+    Ok(contacts.list.iter().flat_map(|contact| [contact.a, contact.b]).collect())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_beside_goes_back_a_little_less() {
+        // A strip of triangles, of which one end goes back.
+        let triangles: Vec<[u32; 3]> = (0..40).map(|v| [v, v + 1, v + 2]).collect();
+        let positions: Vec<DVec3> =
+            (0..42).map(|v| DVec3::new(f64::from(v), f64::from(v % 2), 0.0)).collect();
+        let budget = Budget::unlimited();
+        let stars = Stars::of(&triangles, positions.len(), &budget).unwrap();
+        let lattice = Lattice::around(Aabb::of(positions.iter().copied()), 64, usize::MAX).unwrap();
+        let moves = Moves {
+            before: &positions,
+            goals: &positions,
+            triangles: &triangles,
+            stars: &stars,
+            lattice: &lattice,
+            budget: &budget,
+        };
+        let mut gone = vec![0; positions.len()];
+        assert_eq!(moves.gone_farther(&[0], &[16, ALL], 16, &mut gone), [0]);
+        assert_eq!(moves.gone_farther(&[0], &[16, ALL], 16, &mut gone), [0, 1, 2, 3, 4, 5, 6]);
+        assert_eq!(gone[..9], [64, 48, 48, 32, 32, 16, 16, 0, 0]);
+        // There is nothing behind all the way; without a difference everything goes.
+        assert!(moves.gone_farther(&[0], &[16, ALL], 16, &mut gone).is_empty());
+        assert_eq!(moves.gone_farther(&[1], &[16, ALL], 0, &mut gone).len(), 41);
+    }
+
+    #[test]
+    fn a_search_among_some_finds_what_comparing_all_pairs_finds() {
+        let mut state = 7u64;
+        let mut below = move |n: u64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) % n
+        };
+        let tetrahedron = [[0u32, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+        let triangles: Vec<[u32; 3]> =
+            (0..5).flat_map(|n| tetrahedron.map(|t| t.map(|v| v + 4 * n))).collect();
+        let budget = Budget::unlimited();
+        let (mut meetings, mut coincidences) = (0, 0);
+        for _ in 0..2000 {
+            let mut any = || DVec3::from_array([0; 3].map(|_| below(5) as f64));
+            let base: Vec<DVec3> = (0..20).map(|_| any()).collect();
+            let mut positions = base.clone();
+            let moved: Vec<u32> = vec![3, 9, 16];
+            moved.iter().for_each(|&v| positions[v as usize] = any());
+            if !flat(&base, &triangles, None, &budget).unwrap().is_empty()
+                || !flat(&positions, &triangles, None, &budget).unwrap().is_empty()
+            {
+                continue;
+            }
+            let bvh = Bvh::build(&base, &triangles, None, &budget).unwrap();
+            let known = Known { positions: base, bvh };
+            let has_moved = |t: &u32| triangles[*t as usize].iter().any(|v| moved.contains(v));
+            let these: Vec<u32> = (0..20).filter(has_moved).collect();
+            let mut found = known.meeting(&positions, &triangles, &these, &budget).unwrap();
+            found.sort_unstable();
+            found.dedup();
+            let meet = |t: u32, other: u32| {
+                let [these, others] = [t, other].map(|t| triangles[t as usize]);
+                let plane = ThreePointPlane::through(these.map(|v| positions[v as usize]));
+                let points = others.map(|v| &positions[v as usize]);
+                t != other && contact(&plane, points, Shared::between(these, others)).is_some()
+            };
+            let wanted: Vec<u32> = (0..20)
+                .filter(|&t| (0..20).any(|other| (has_moved(&t) || has_moved(&other)) && meet(t, other)))
+                .collect();
+            assert_eq!(found, wanted);
+            meetings += found.len();
+            // Vertices at one place are corners of triangles that meet.
+            for &v in &moved {
+                let is_there = |w: &u32| *w != v && positions[*w as usize] == positions[v as usize];
+                if (0..20).any(|w| is_there(&w)) {
+                    assert!(found.iter().any(|&t| triangles[t as usize].contains(&v)));
+                    coincidences += 1;
+                }
+            }
+        }
+        assert!(meetings > 2000 && coincidences > 100, "{meetings} {coincidences}");
+    }
 
     #[test]
     fn a_corner_that_went_through_the_base_comes_back() {
@@ -282,7 +419,8 @@ mod tests {
                 budget: &budget,
             };
             let settled = moves.without_contacts().unwrap();
-            assert!(everywhere(&settled, &triangles, &budget).unwrap().is_empty());
+            let bvh = Bvh::build(&settled, &triangles, None, &budget).unwrap();
+            assert!(everywhere(&settled, &triangles, &bvh, &budget).unwrap().is_empty());
             settled
         };
         let mut goals = before.clone();
