@@ -100,7 +100,8 @@ impl Moves<'_> {
         self.lattice.nearest(self.lattice.units_of(place))
     }
 
-    /// Moves vertices from `positions` back to `before`, where nothing meets, until nothing does. Where `changed` names triangles, all others are as `before`. False: everything went back.
+    /// Moves vertices from `positions` back to `before`, where nothing meets, until nothing does. Where `changed` names triangles, all
+    /// others are as `before`. False: everything went back.
     fn take_back(
         &self,
         positions: &mut [DVec3],
