@@ -151,49 +151,11 @@ fn creases_are_where_they_belong_wherever_they_go_through_cells() {
     }
 }
 
-#[test]
-fn a_ball_with_dents_of_a_few_cells_is_fitted_although_many_moves_meet() {
-    let (columns, rows) = (64u32, 26u32);
-    let at = |column: u32, row: u32| {
-        let (a, b) = (f64::from(column) / f64::from(columns), f64::from(row) / f64::from(rows));
-        let (a, b) = (a * std::f64::consts::TAU, b * std::f64::consts::PI);
-        let radius = 1.0 + 0.05 * (17.0 * a).sin() * (13.0 * b).sin().powi(2);
-        DVec3::new(a.cos() * b.sin(), a.sin() * b.sin(), b.cos()) * radius
-    };
-    let mut positions = vec![at(0, 0), at(0, rows)];
-    positions.extend(
-        (1..rows).flat_map(|row| (0..columns).map(move |column| (column, row))).map(|(c, r)| at(c, r)),
-    );
-    let id = |column: u32, row: u32| match row {
-        0 => 0,
-        _ if row == rows => 1,
-        _ => 2 + (row - 1) * columns + column % columns,
-    };
-    let mut triangles = Vec::new();
-    for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
-        let [a, b] = [id(column, row), id(column + 1, row)];
-        let [c, d] = [id(column, row + 1), id(column + 1, row + 1)];
-        triangles.extend([[a, c, d], [a, d, b]].into_iter().filter(|[a, b, c]| a != b && b != c && c != a));
-    }
-    let (wrap, certificate) = wrapped(&positions, &triangles, 24);
-    assert_eq!((certificate.shells.len(), certificate.shells[0].genus), (1, 0));
-    let fit = wrap.account.fit;
-    assert!(fit.moved > 5000 && fit.taken_back * 3 < fit.moved, "{fit:?}");
-    let search = NearestSearch::build(&positions, &triangles, &Budget::unlimited()).unwrap();
-    let mean = |places: &[DVec3]| {
-        let distance =
-            |&place: &DVec3| search.find(place, None, &Budget::unlimited()).unwrap().unwrap().distance;
-        places.iter().map(distance).sum::<f64>() / places.len() as f64
-    };
-    let (before, after) = (mean(&wrap.unfitted), mean(&wrap.positions));
-    assert!(after < before, "{before} {after}");
-}
-
 /// A linear congruential generator (Knuth's multiplier): signs need no better.
-struct Random(u64);
+pub(super) struct Random(pub(super) u64);
 
 impl Random {
-    fn below(&mut self, n: u64) -> u64 {
+    pub(super) fn below(&mut self, n: u64) -> u64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 33) % n
     }

@@ -4,6 +4,9 @@
 #[allow(dead_code, reason = "each folder uses a part of it")]
 mod support;
 
+#[path = "../../benches/support/dented_sphere.rs"]
+mod dented_sphere;
+
 mod analysis;
 mod certificate_exponents;
 mod certificate_mutations;

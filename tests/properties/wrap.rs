@@ -1,5 +1,6 @@
 //! The lattice wrap on soups of every bad kind, judged by the certificate.
 
+use crate::dented_sphere::dented_sphere;
 use crate::oracle::RawSoup;
 use crate::random::Random;
 use crate::raw_files::encode;
@@ -180,6 +181,19 @@ fn tell_progress(round: usize, rounds: &Range<usize>) {
     if rounds.len() >= 200 && (round - rounds.start).is_multiple_of(rounds.len() / 100) {
         eprintln!("round {round} of {rounds:?}");
     }
+}
+
+/// A fifth of the vertices meet something once they are where they belong.
+#[test]
+fn a_ball_with_dents_of_two_cells_is_fitted_although_many_moves_meet() {
+    let (positions, triangles) = dented_sphere(64, 26);
+    let options = WrapOptions { cells: 24, ..WrapOptions::default() };
+    let wrapped = wrap(&positions, &triangles, &options, &Budget::unlimited()).unwrap();
+    let certificate = certificate_of(&wrapped.positions, &wrapped.triangles);
+    assert!(certificate.is_printable(), "{:?}", certificate.witnesses);
+    assert_eq!((certificate.shells.len(), certificate.shells[0].genus), (1, 0));
+    let fit = wrapped.account.fit;
+    assert!(fit.moved > 5000 && fit.taken_back * 3 < fit.moved, "{fit:?}");
 }
 
 #[test]

@@ -59,7 +59,7 @@ pub(super) fn fit(
     triangles: &[[u32; 3]],
     budget: &Budget,
 ) -> Result<FitCounts, Stopped> {
-    let _charge = budget.charge(positions.len() as u64 * 264 + triangles.len() as u64 * 16)?;
+    let _charge = budget.charge(positions.len() as u64 * 240 + triangles.len() as u64 * 16)?;
     let stars = Stars::of(triangles, positions.len(), budget)?;
     let mut places: Vec<DVec3> = positions.iter().map(|&p| lattice.units_of(p)).collect();
     // Clamped cuts, and thin walls.

@@ -2,7 +2,7 @@
 
 use super::super::lattice::Lattice;
 use super::normals::Stars;
-use crate::budget::{Budget, CHECK_EVERY, Stopped};
+use crate::budget::{Budget, CHECK_EVERY, Charge, Stopped};
 use crate::geom::{Aabb, DVec3, Shared, ThreePointPlane, are_collinear, contact};
 use crate::par;
 use crate::spatial::{self, Bvh, Search, Terrains, coincident_f64};
@@ -54,7 +54,7 @@ pub(super) struct Moves<'m> {
     pub(super) budget: &'m Budget,
 }
 
-impl Moves<'_> {
+impl<'m> Moves<'m> {
     /// Positions as near to the goals as nothing meets and no triangle is without area. Where something does, vertices go back a
     /// part of their way, those of triangles that meet or have no area and some around them, until nothing does; then half of those
     /// that went back try to come nearer again, and the other half, and so on.
@@ -108,7 +108,7 @@ impl Moves<'_> {
         before: &[DVec3],
         back: &Back,
         mut changed: Option<Vec<u32>>,
-        known: &mut Option<Known>,
+        known: &mut Option<Known<'m>>,
     ) -> Result<bool, Stopped> {
         let ahead = positions.to_vec();
         let mut gone = vec![0u8; positions.len()];
@@ -118,7 +118,10 @@ impl Moves<'_> {
             if bad.is_empty() {
                 return Ok(true);
             }
-            let farther = self.gone_farther(&bad, back.steps, back.less_beside[round / ROUNDS], &mut gone);
+            let mut farther =
+                self.gone_farther(&bad, back.steps, back.less_beside[round / ROUNDS], &mut gone);
+            // One that is back already is not what meets: of what meets, something has moved.
+            farther.retain(|&v| positions[v as usize] != before[v as usize]);
             for v in farther.iter().map(|&v| v as usize) {
                 positions[v] = match gone[v] {
                     ALL => before[v],
@@ -142,8 +145,8 @@ impl Moves<'_> {
         Ok(is_settled)
     }
 
-    /// Has those of `bad` go back farther, each to the next of `steps`, and those around them to `less` than what they are beside;
-    /// gives the vertices that did.
+    /// Raises how far, of [`ALL`], vertices have `gone` back: that of each of `bad` to the next of `steps`, and that of all others to
+    /// at least `less` below what is beside them. Gives the vertices whose part rose, ascending.
     fn gone_farther(&self, bad: &[u32], steps: &[u8], less: u8, gone: &mut [u8]) -> Vec<u32> {
         let mut farther = Vec::new();
         for &v in bad {
@@ -174,7 +177,7 @@ impl Moves<'_> {
         &self,
         positions: &[DVec3],
         among: Option<&[u32]>,
-        known: &mut Option<Known>,
+        known: &mut Option<Known<'m>>,
     ) -> Result<Offenders, Stopped> {
         let (triangles, budget) = (self.triangles, self.budget);
         let mut bad = flat(positions, triangles, among, budget)?;
@@ -187,9 +190,12 @@ impl Moves<'_> {
             let meeting = match (among, &*known) {
                 (Some(among), Some(known)) => known.meeting(positions, triangles, among, budget)?,
                 _ => {
+                    let bytes =
+                        triangles.len() as u64 * Bvh::BYTES_PER_TRIANGLE + size_of_val(positions) as u64;
+                    let charge = budget.charge(bytes)?;
                     let bvh = Bvh::build(positions, triangles, None, budget)?;
                     let meeting = everywhere(positions, triangles, &bvh, budget)?;
-                    *known = Some(Known { positions: positions.to_vec(), bvh });
+                    *known = Some(Known { positions: positions.to_vec(), bvh, _charge: charge });
                     meeting
                 }
             };
@@ -202,12 +208,13 @@ impl Moves<'_> {
 }
 
 /// A search structure of the triangles with these positions.
-struct Known {
+struct Known<'b> {
     positions: Vec<DVec3>,
     bvh: Bvh,
+    _charge: Charge<'b>,
 }
 
-impl Known {
+impl Known<'_> {
     /// Triangles that meet one of `these`, and those of these that do.
     fn meeting(
         &self,
@@ -220,8 +227,11 @@ impl Known {
         let is_away = |v: &u32| positions[*v as usize] != self.positions[*v as usize];
         let is_elsewhere: Vec<bool> = triangles.iter().map(|corners| corners.iter().any(is_away)).collect();
         let elsewhere: Vec<u32> = (0..triangles.len() as u32).filter(|&t| is_elsewhere[t as usize]).collect();
-        let corners: Vec<[u32; 3]> = elsewhere.iter().map(|&t| triangles[t as usize]).collect();
-        let there = Bvh::build(positions, &corners, None, budget)?;
+        let of_tree = elsewhere.len() as u64 * (4 + Bvh::BYTES_PER_TRIANGLE);
+        let _charge = budget.charge(2 * triangles.len() as u64 + of_tree)?;
+        let there = Bvh::build(positions, triangles, Some(&elsewhere), budget)?;
+        let mut is_asked = vec![false; triangles.len()];
+        these.iter().for_each(|&t| is_asked[t as usize] = true);
         let found = par::try_map_ranges(these.len(), 256, |range| {
             let mut found = Vec::new();
             for &t in &these[range] {
@@ -231,7 +241,9 @@ impl Known {
                 let mut compare = |other: u32| {
                     let others = triangles[other as usize];
                     let points = others.map(|v| &positions[v as usize]);
-                    let is_near = other != t && Aabb::of(points.map(|&p| p)).meets(bounds);
+                    // Of two that are both asked for, the first one compares.
+                    let is_turn = other > t || other < t && !is_asked[other as usize];
+                    let is_near = is_turn && Aabb::of(points.map(|&p| p)).meets(bounds);
                     if is_near && contact(&plane, points, Shared::between(corners, others)).is_some() {
                         found.extend([t, other]);
                     }
@@ -241,7 +253,7 @@ impl Known {
                         compare(other);
                     }
                 })?;
-                there.visit_box(bounds, budget, |n| compare(elsewhere[n as usize]))?;
+                there.visit_box(bounds, budget, compare)?;
             }
             budget.spend(4)?;
             Ok(found)
@@ -318,6 +330,7 @@ fn everywhere(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::wrap::tests::Random;
 
     #[test]
     fn what_is_beside_goes_back_a_little_less() {
@@ -347,31 +360,33 @@ mod tests {
 
     #[test]
     fn a_search_among_some_finds_what_comparing_all_pairs_finds() {
-        let mut state = 7u64;
-        let mut below = move |n: u64| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 33) % n
-        };
-        let tetrahedron = [[0u32, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+        let mut random = Random(7);
+        // Octahedra: their opposite corners are apexes of triangles that share an edge.
+        let octahedron =
+            [[4u32, 0, 1], [4, 1, 2], [4, 2, 3], [4, 3, 0], [5, 1, 0], [5, 2, 1], [5, 3, 2], [5, 0, 3]];
         let triangles: Vec<[u32; 3]> =
-            (0..5).flat_map(|n| tetrahedron.map(|t| t.map(|v| v + 4 * n))).collect();
+            (0..3).flat_map(|n| octahedron.map(|t| t.map(|v| v + 6 * n))).collect();
+        let all = || 0..triangles.len() as u32;
         let budget = Budget::unlimited();
-        let (mut meetings, mut coincidences) = (0, 0);
+        let (mut meetings, mut coincidences, mut opposite) = (0, 0, 0);
         for _ in 0..2000 {
-            let mut any = || DVec3::from_array([0; 3].map(|_| below(5) as f64));
-            let base: Vec<DVec3> = (0..20).map(|_| any()).collect();
+            let mut any = || DVec3::from_array([0; 3].map(|_| random.below(6) as f64));
+            let base: Vec<DVec3> = (0..18).map(|_| any()).collect();
             let mut positions = base.clone();
-            let moved: Vec<u32> = vec![3, 9, 16];
+            let moved = [4u32, 9, 13];
             moved.iter().for_each(|&v| positions[v as usize] = any());
+            if random.below(4) == 0 {
+                positions[4] = positions[5];
+            }
             if !flat(&base, &triangles, None, &budget).unwrap().is_empty()
                 || !flat(&positions, &triangles, None, &budget).unwrap().is_empty()
             {
                 continue;
             }
             let bvh = Bvh::build(&base, &triangles, None, &budget).unwrap();
-            let known = Known { positions: base, bvh };
+            let known = Known { positions: base, bvh, _charge: budget.charge(0).unwrap() };
             let has_moved = |t: &u32| triangles[*t as usize].iter().any(|v| moved.contains(v));
-            let these: Vec<u32> = (0..20).filter(has_moved).collect();
+            let these: Vec<u32> = all().filter(has_moved).collect();
             let mut found = known.meeting(&positions, &triangles, &these, &budget).unwrap();
             found.sort_unstable();
             found.dedup();
@@ -381,21 +396,25 @@ mod tests {
                 let points = others.map(|v| &positions[v as usize]);
                 t != other && contact(&plane, points, Shared::between(these, others)).is_some()
             };
-            let wanted: Vec<u32> = (0..20)
-                .filter(|&t| (0..20).any(|other| (has_moved(&t) || has_moved(&other)) && meet(t, other)))
+            let wanted: Vec<u32> = all()
+                .filter(|&t| all().any(|other| (has_moved(&t) || has_moved(&other)) && meet(t, other)))
                 .collect();
             assert_eq!(found, wanted);
             meetings += found.len();
             // Vertices at one place are corners of triangles that meet.
             for &v in &moved {
                 let is_there = |w: &u32| *w != v && positions[*w as usize] == positions[v as usize];
-                if (0..20).any(|w| is_there(&w)) {
+                if (0..18).any(|w| is_there(&w)) {
                     assert!(found.iter().any(|&t| triangles[t as usize].contains(&v)));
                     coincidences += 1;
+                    opposite += u32::from(v % 6 == 4 && is_there(&(v + 1)));
                 }
             }
         }
-        assert!(meetings > 2000 && coincidences > 100, "{meetings} {coincidences}");
+        assert!(
+            meetings > 2000 && coincidences > 100 && opposite > 20,
+            "{meetings} {coincidences} {opposite}"
+        );
     }
 
     #[test]
