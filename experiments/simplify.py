@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Simplification beside the peers at equal numbers of faces, on real meshes; prints Markdown.
 
-usage: simplify.py quality [--share 0.1] [--models 40] [--cache FILE]     distance of the results from the original, in every mode
-       simplify.py speed [--rounds 3] [--mesh m1]          seconds to a tenth of the faces, alternating in one run
+usage: simplify.py quality [--share 0.1] [--models 40] [--cache FILE] [--peers NAMES]     distance of the results from the original, in every mode
+       simplify.py speed [--rounds 3] [--mesh m1] [--peers NAMES]          seconds to a tenth of the faces, alternating in one run
        simplify.py judge                                   guarded results of sound corpus files before the judge; needs `cargo build --release`
 with MESHMEND_SHARED and the peers' own set-up done (see its README). Ours is `cargo bench --bench simplify`.
 Distances are measured by Open3D: 60,000 random points of each surface and all its vertices against the other surface.
@@ -15,7 +15,7 @@ peers = os.environ.get("MESH_PEERS_DIR") or os.path.join(tempfile.gettempdir(), 
 judge = os.environ.get("MESH_JUDGE_DIR") or os.path.join(tempfile.gettempdir(), "meshmend-judge")
 p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 p.add_argument("what", choices=("quality", "speed", "judge")); p.add_argument("--share", type=float, default=0.1); p.add_argument("--models", type=int, default=40); p.add_argument("--cache", help="file that keeps what was measured of the peers")
-p.add_argument("--rounds", type=int, default=3); p.add_argument("--mesh", default="m1"); o = p.parse_args()
+p.add_argument("--rounds", type=int, default=3); p.add_argument("--mesh", default="m1"); p.add_argument("--peers", default="", help="only these, separated by commas"); o = p.parse_args()
 sys.path.insert(0, os.path.join(shared, "judge"))
 from meshfile import load_any, read_msh, write_msh
 MODES, FACES = ("strict", "fast", "guarded"), (2_000, 130_000)
@@ -70,6 +70,7 @@ def by_meshoptimizer(V, F, k, d):
     import meshoptimizer as mo
     out = np.zeros(F.size, np.uint32); n = mo.simplify(out, np.ascontiguousarray(F.ravel(), np.uint32), np.ascontiguousarray(V, np.float32), target_index_count=3 * k, target_error=1.0); return V, out[:n].reshape(-1, 3)
 PEERS = dict(pymeshlab=by_pymeshlab, cgal=by_cgal, meshlib=by_meshlib, open3d=by_open3d, fast_simplification=by_fast_simplification, meshoptimizer=by_meshoptimizer)
+if o.peers: PEERS = {name: PEERS[name] for name in o.peers.split(",") if name in PEERS}
 
 def quality():
     names, ratios, wins = [], {m: ([], []) for m in MODES}, {}
@@ -104,7 +105,7 @@ def quality():
 
 def speed():
     python, bench = os.path.join(peers, "venv/bin/python"), os.path.join(shared, "peers/bench.py"); stl = os.path.join(peers, "bench", o.mesh + ".stl")
-    names = ("meshoptimizer", "fast_simplification", "meshlib", "meshlib_par", "open3d", "pymeshlab", "cgal"); seconds, mine = {}, {m: [] for m in MODES}
+    names = ("meshoptimizer", "fast_simplification", "meshlib", "meshlib_par", "open3d", "pymeshlab", "cgal"); names = o.peers.split(",") if o.peers else names; seconds, mine = {}, {m: [] for m in MODES}
     for _ in range(o.rounds):
         for mode in MODES: mine[mode].append(ours(stl, 0.1, mode))
         for name in names:
