@@ -39,6 +39,12 @@ pub fn map_ranges<R: Send>(len: usize, chunk: usize, body: impl Fn(Range<usize>)
     (0..len.div_ceil(chunk)).into_par_iter().map(|i| body(i * chunk..((i + 1) * chunk).min(len))).collect()
 }
 
+/// The values of `body` for each index below `len`, in their order; at least `chunk` of them by one thread. For small values, which are
+/// written where they stay.
+pub fn map_indices<T: Send>(len: usize, chunk: usize, body: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    (0..len).into_par_iter().with_min_len(chunk.max(1)).map(&body).collect()
+}
+
 /// As [`map_ranges`] for bodies that can fail; of several failures the one of the lowest range is returned.
 pub fn try_map_ranges<R: Send, E: Send>(
     len: usize,
@@ -80,6 +86,10 @@ mod tests {
             assert_eq!(ranges, [0..4, 4..8, 8..10]);
         }
         assert!(map_ranges(0, 4, |r| r).is_empty());
+        for threads in [1, 2, 8] {
+            let squares = with_threads(threads, || map_indices(100, 7, |i| i * i));
+            assert!(squares.into_iter().eq((0..100).map(|i| i * i)));
+        }
     }
 
     #[test]

@@ -5,6 +5,7 @@ use super::wedges::Wedges;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, DVec3};
 use crate::mesh::corner_table::{CornerTable, NONE, next, prev};
+use crate::par;
 
 /// In the place of an origin: a position that the input does not have.
 pub const NEW: u32 = u32::MAX;
@@ -49,29 +50,35 @@ pub(super) enum MergeRule {
 }
 
 impl<S: Copy + Default> CollapseSurface<S> {
-    /// The vertices of `order`, one after the other.
+    /// A surface of `count` vertices, of which number `i` is that of the input with the number `origin_of(i)`.
     pub(super) fn new(
         positions: &[DVec3],
-        order: impl ExactSizeIterator<Item = u32>,
+        count: usize,
+        origin_of: impl Fn(usize) -> u32 + Sync,
         table: CornerTable,
         budget: &Budget,
-    ) -> Result<Self, Stopped> {
-        let bounds = Aabb::of(positions.iter().copied().filter(|p| p.is_finite()));
+    ) -> Result<Self, Stopped>
+    where
+        S: Send,
+    {
+        budget.check()?;
+        let bounds = par::map_ranges(positions.len(), CHECK_EVERY, |range| {
+            Aabb::of(positions[range].iter().copied().filter(|p| p.is_finite()))
+        });
+        let bounds = bounds.into_iter().fold(Aabb::EMPTY, Aabb::union);
         let scale = working_scale(bounds);
-        let mut vertices = Vec::with_capacity(order.len());
-        for (i, origin) in order.enumerate() {
-            if i % CHECK_EVERY == 0 {
-                budget.check()?;
-            }
-            vertices.push(Vertex {
+        let vertices = par::map_indices(count, CHECK_EVERY, |i| {
+            let origin = origin_of(i);
+            Vertex {
                 position: positions[origin as usize] * scale,
                 state: S::default(),
                 origin,
                 lines: 0,
                 is_held: false,
                 has_aside: false,
-            });
-        }
+            }
+        });
+        budget.check()?;
         let wedges = Wedges::default();
         Ok(Self { table, vertices, wedges, has_regions: false, scale, rounder: rounder(bounds, scale) })
     }

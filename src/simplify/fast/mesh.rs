@@ -7,6 +7,7 @@ use crate::mesh::Color;
 use crate::par;
 use crate::simplify::order::{Curve, along_curve};
 use crate::simplify::surface::Vertex;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What is left of the input, and some vertices without triangles.
 #[derive(Debug, Clone, Default)]
@@ -70,11 +71,13 @@ impl<S: Copy + Send + Sync> Mesh<S> {
         shift: DVec3,
         budget: &Budget,
     ) -> Result<MeshDivision, Stopped> {
-        let mut used = vec![false; self.vertices.len()];
-        for block in self.triangles.chunks(CHECK_EVERY) {
-            budget.check()?;
-            block.as_flattened().iter().for_each(|&v| used[v as usize] = true);
-        }
+        let used: Vec<AtomicBool> = par::map_indices(self.vertices.len(), CHECK_EVERY, |_| false.into());
+        par::try_map_ranges(self.triangles.len(), CHECK_EVERY, |range| {
+            let corners = self.triangles[range].as_flattened();
+            corners.iter().for_each(|&v| used[v as usize].store(true, Ordering::Relaxed));
+            budget.check()
+        })?;
+        let used: Vec<bool> = used.into_iter().map(AtomicBool::into_inner).collect();
         let (order, curve) = along_curve(|v| self.vertices[v].position, &used, shift, budget)?;
         drop(used);
         let mut place = vec![0u32; self.vertices.len()];
@@ -100,44 +103,44 @@ impl<S: Copy + Send + Sync> Mesh<S> {
         budget: &Budget,
     ) -> Result<(Vec<usize>, Vec<bool>), Stopped> {
         let parts = vertex_count.div_ceil(part_len);
-        let part_of = |corners: &[u32; 3]| {
-            let [a, b, c] = corners.map(|v| v as usize / part_len);
-            if a == b && b == c { a } else { parts }
-        };
+        let part_of = par::map_indices(self.triangles.len(), CHECK_EVERY, |t| {
+            let [a, b, c] = self.triangles[t].map(|v| v as usize / part_len);
+            if a == b && b == c { a as u32 } else { parts as u32 }
+        });
         let mut starts = vec![0usize; parts + 2];
         let mut is_between = vec![false; vertex_count];
-        for block in self.triangles.chunks(CHECK_EVERY) {
-            budget.check()?;
-            for corners in block {
-                let part = part_of(corners);
-                starts[part + 1] += 1;
-                if part == parts {
-                    corners.iter().for_each(|&v| is_between[v as usize] = true);
-                }
+        for (t, &part) in part_of.iter().enumerate() {
+            starts[part as usize + 1] += 1;
+            if part as usize == parts {
+                self.triangles[t].iter().for_each(|&v| is_between[v as usize] = true);
             }
         }
+        budget.check()?;
         for part in 0..=parts {
             starts[part + 1] += starts[part];
         }
         let mut next = starts.clone();
         let count = self.triangles.len();
-        let (mut triangles, mut numbers, mut lines) = (vec![[0; 3]; count], vec![0; count], vec![0; count]);
-        let mut texture = vec![[[0.0; 2]; 3]; self.texture.len()];
-        for (t, corners) in self.triangles.iter().enumerate() {
-            if t % CHECK_EVERY == 0 {
-                budget.check()?;
-            }
-            let place = &mut next[part_of(corners)];
-            triangles[*place] = *corners;
-            numbers[*place] = self.numbers[t];
-            lines[*place] = self.lines[t];
-            if let Some(points) = self.texture.get(t) {
-                texture[*place] = *points;
-            }
+        let mut sorted = vec![0u32; count];
+        for (t, &part) in (0..).zip(&part_of) {
+            let place = &mut next[part as usize];
+            sorted[*place] = t;
             *place += 1;
         }
-        (self.triangles, self.numbers, self.lines, self.texture) = (triangles, numbers, lines, texture);
+        drop(part_of);
+        budget.check()?;
+        self.triangles = gathered(&self.triangles, &sorted);
+        self.numbers = gathered(&self.numbers, &sorted);
+        self.lines = gathered(&self.lines, &sorted);
+        if !self.texture.is_empty() {
+            self.texture = gathered(&self.texture, &sorted);
+        }
         starts.pop();
         Ok((starts, is_between))
     }
+}
+
+/// The items at `places`.
+fn gathered<T: Copy + Send + Sync>(items: &[T], places: &[u32]) -> Vec<T> {
+    par::map_indices(places.len(), CHECK_EVERY, |i| items[places[i] as usize])
 }

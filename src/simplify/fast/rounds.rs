@@ -10,7 +10,7 @@ use super::part::{GuardedRegion, PartSimplifier, PartTopology, Rules, Tally};
 use super::shells::ClosedShells;
 use super::space::PartBoxes;
 use super::strays::Strays;
-use crate::budget::{Budget, Stopped};
+use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, DVec3};
 use crate::mesh::corner_table::CornerTable;
 use crate::par;
@@ -69,7 +69,8 @@ impl<'r, C: CollapseCriterion> Rounds<'r, C> {
     ) -> Result<Self, Stopped> {
         let mut frame = CollapseSurface::new(
             input.positions,
-            0..input.positions.len() as u32,
+            input.positions.len(),
+            |i| i as u32,
             CornerTable::unpaired(&[], 0),
             budget,
         )?;
@@ -298,21 +299,38 @@ impl<'r, C: CollapseCriterion> Rounds<'r, C> {
         PartSimplifier::new(surface, is_free, colors, room, self.rules, self.budget)
     }
 
+    /// Puts what is left of the parts together, and after it the triangles between them.
     fn collect(&mut self, division: &MeshDivision, parts: Vec<PartSimplifier<'r, C>>) {
-        let mut left = Mesh::default();
-        for (i, part) in parts.into_iter().enumerate() {
-            let (first_vertex, first_triangle) = ((i * division.part_len) as u32, division.starts[i]);
+        // Not needed any more, and as large as what is made here.
+        self.mesh.vertices = Vec::new();
+        let MeshDivision { part_len, ref order, ref starts, .. } = *division;
+        let vertices = par::map_indices(order.len(), CHECK_EVERY, |place| {
+            parts[place / part_len].surface.vertices[place % part_len]
+        });
+        let lists = par::map_ranges(parts.len(), 1, |range| {
+            let (i, part) = (range.start, &parts[range.start]);
+            let mut left = Mesh::<C::State>::default();
             for (t, corners, lines) in part.triangles() {
-                left.triangles.push(corners.map(|v| v + first_vertex));
-                left.numbers.push(self.mesh.numbers[first_triangle + t as usize]);
+                left.triangles.push(corners.map(|v| v + (i * part_len) as u32));
+                left.numbers.push(self.mesh.numbers[starts[i] + t as usize]);
                 left.lines.push(lines);
                 left.texture.extend(part.surface.wedges.0.get(t as usize));
             }
-            self.tally.add(&part.tally);
-            left.vertices.extend(part.surface.vertices);
-            left.colors.extend(part.colors);
-        }
+            left
+        });
+        let count = lists.iter().map(|left| left.triangles.len()).sum::<usize>();
         let first = division.first_between();
+        let mut left = Mesh { vertices, ..Mesh::default() };
+        left.triangles.reserve_exact(count + self.mesh.triangles.len() - first);
+        left.numbers.reserve_exact(count + self.mesh.triangles.len() - first);
+        for (part, mut list) in parts.into_iter().zip(lists) {
+            self.tally.add(&part.tally);
+            left.colors.extend(part.colors);
+            left.triangles.append(&mut list.triangles);
+            left.numbers.append(&mut list.numbers);
+            left.lines.append(&mut list.lines);
+            left.texture.append(&mut list.texture);
+        }
         left.triangles.extend(&self.mesh.triangles[first..]);
         left.numbers.extend(&self.mesh.numbers[first..]);
         left.lines.extend(&self.mesh.lines[first..]);

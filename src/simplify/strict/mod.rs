@@ -53,8 +53,9 @@ fn run<C: CollapseCriterion>(
 ) -> Result<Vec<Simplified>, SimplifyError> {
     let _charge = budget.charge(bytes_of::<C>(input))?;
     let (layout, table) = laid_out(input, budget)?;
-    let order = layout.vertices.iter().copied();
-    let mut surface = CollapseSurface::<C::State>::new(input.positions, order, table, budget)?;
+    let origins = &layout.vertices;
+    let mut surface =
+        CollapseSurface::<C::State>::new(input.positions, origins.len(), |i| origins[i], table, budget)?;
     surface.wedges.0 = layout.of_triangles(input.texture);
     surface.has_regions = input.has_regions();
     mark_lines(&mut surface, &layout.of_triangles(input.face_groups), options, budget)?;
