@@ -15,10 +15,14 @@ peers = os.environ.get("MESH_PEERS_DIR") or os.path.join(tempfile.gettempdir(), 
 judge = os.environ.get("MESH_JUDGE_DIR") or os.path.join(tempfile.gettempdir(), "meshmend-judge")
 p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 p.add_argument("what", choices=("quality", "speed", "judge")); p.add_argument("--share", type=float, default=0.1); p.add_argument("--models", type=int, default=40); p.add_argument("--cache", help="file that keeps what was measured of the peers")
-p.add_argument("--rounds", type=int, default=3); p.add_argument("--mesh", default="m1"); p.add_argument("--peers", default="", help="only these, separated by commas"); o = p.parse_args()
+p.add_argument("--rounds", type=int, default=3); p.add_argument("--mesh", default="m1"); p.add_argument("--peers", default="", help="only these of the other programs, separated by commas"); o = p.parse_args()
 sys.path.insert(0, os.path.join(shared, "judge"))
 from meshfile import load_any, read_msh, write_msh
 MODES, FACES = ("strict", "fast", "guarded"), (2_000, 130_000)
+NAMES = ("meshoptimizer", "fast_simplification", "meshlib", "meshlib_par", "open3d", "pymeshlab", "cgal")
+chosen, asked = tuple(o.peers.split(",")) if o.peers else NAMES, f" --peers {o.peers}" if o.peers else ""
+if unknown := set(chosen) - set(NAMES): p.error("unknown peers: " + ", ".join(sorted(unknown)))
+NAMES = chosen
 commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=root, capture_output=True, text=True).stdout.strip()
 if o.what != "judge": subprocess.run(["cargo", "bench", "--locked", "--bench", "simplify", "--no-run", "-q"], cwd=root, check=True)
 
@@ -70,7 +74,7 @@ def by_meshoptimizer(V, F, k, d):
     import meshoptimizer as mo
     out = np.zeros(F.size, np.uint32); n = mo.simplify(out, np.ascontiguousarray(F.ravel(), np.uint32), np.ascontiguousarray(V, np.float32), target_index_count=3 * k, target_error=1.0); return V, out[:n].reshape(-1, 3)
 PEERS = dict(pymeshlab=by_pymeshlab, cgal=by_cgal, meshlib=by_meshlib, open3d=by_open3d, fast_simplification=by_fast_simplification, meshoptimizer=by_meshoptimizer)
-if o.peers: PEERS = {name: PEERS[name] for name in o.peers.split(",") if name in PEERS}
+PEERS = {name: run for name, run in PEERS.items() if name in NAMES}
 
 def quality():
     names, ratios, wins = [], {m: ([], []) for m in MODES}, {}
@@ -97,7 +101,7 @@ def quality():
                 for i in (0, 1): ratios[mode][i].append(mine[i] / max(found[best[i]][i], 1e-7))
                 if count > 1.02 * k: print(f"{id} {mode}: {count} faces of {k}", file=sys.stderr)
         names.append(id); print(id, len(F), {m: [round(r[-1], 3) for r in ratios[m]] for m in MODES}, best, file=sys.stderr, flush=True)
-    print(f"## Quality at {o.share:.0%} of the faces\n\n{len(names)} clean corpus models of {FACES[0]:,} to {FACES[1]:,} faces, commit {commit}; made by `experiments/simplify.py quality --share {o.share}`.\n"
+    print(f"## Quality at {o.share:.0%} of the faces\n\n{len(names)} clean corpus models of {FACES[0]:,} to {FACES[1]:,} faces, commit {commit}; made by `experiments/simplify.py quality --share {o.share}{asked}`.\n"
           "Ratio of our distance to that of the best peer of each model (below 1: ours is nearer), median and 90th percentile over the models.\n")
     print("| mode | mean distance, median | 90 % | Hausdorff distance, median | 90 % |\n|---|---|---|---|---|")
     for mode in MODES: print(f"| {mode} | " + " | ".join(f"{statistics.median(r):.3f} | {np.percentile(r, 90):.3f}" for r in ratios[mode]) + " |")
@@ -105,19 +109,19 @@ def quality():
 
 def speed():
     python, bench = os.path.join(peers, "venv/bin/python"), os.path.join(shared, "peers/bench.py"); stl = os.path.join(peers, "bench", o.mesh + ".stl")
-    names = ("meshoptimizer", "fast_simplification", "meshlib", "meshlib_par", "open3d", "pymeshlab", "cgal"); names = o.peers.split(",") if o.peers else names; seconds, mine = {}, {m: [] for m in MODES}
+    seconds, mine = {}, {m: [] for m in MODES}
     for _ in range(o.rounds):
         for mode in MODES: mine[mode].append(ours(stl, 0.1, mode))
-        for name in names:
+        for name in NAMES:
             try: t = json.loads(subprocess.run([python, bench, "one", "simplify", name, o.mesh], capture_output=True, text=True, timeout=300).stdout).get("t")
             except Exception: t = None
             if t: seconds.setdefault(name, []).append(t)
     n = mine["fast"][0]["faces"]; med = statistics.median; fast = med([m["seconds"] for m in mine["fast"]])
-    print(f"## Speed, {n:,} faces to a tenth\n\n{os.cpu_count()} cores, commit {commit}, median of {o.rounds} alternating rounds; made by `experiments/simplify.py speed --rounds {o.rounds} --mesh {o.mesh}`.\n")
+    print(f"## Speed, {n:,} faces to a tenth\n\n{os.cpu_count()} cores, commit {commit}, median of {o.rounds} alternating rounds; made by `experiments/simplify.py speed --rounds {o.rounds} --mesh {o.mesh}{asked}`.\n")
     print("| program | seconds | in relation to fast | input faces per second | bytes charged per face |\n|---|---|---|---|---|")
     for mode in MODES:
         t = med([m["seconds"] for m in mine[mode]]); print(f"| Meshmend {mode} | {t:.2f} | {t / fast:.2f} | {n / t:,.0f} | {mine[mode][0]['peak_bytes_per_face']:.0f} |")
-    for name in names:
+    for name in NAMES:
         if name in seconds: t = med(seconds[name]); print(f"| {name} | {t:.2f} | {t / fast:.2f} | {n / t:,.0f} | |")
         else: print(f"| {name} | failed | | | |")
 

@@ -39,8 +39,8 @@ pub fn map_ranges<R: Send>(len: usize, chunk: usize, body: impl Fn(Range<usize>)
     (0..len.div_ceil(chunk)).into_par_iter().map(|i| body(i * chunk..((i + 1) * chunk).min(len))).collect()
 }
 
-/// The values of `body` for each index below `len`, in their order; at least `chunk` of them by one thread. For small values, which are
-/// written where they stay.
+/// The values of `body` for the indices `0..len`, in their order, `chunk` or more of them by one thread at a time. The list is made once
+/// and written in place, so this is for small values.
 pub fn map_indices<T: Send>(len: usize, chunk: usize, body: impl Fn(usize) -> T + Sync) -> Vec<T> {
     (0..len).into_par_iter().with_min_len(chunk.max(1)).map(&body).collect()
 }
