@@ -24,7 +24,7 @@ pub(super) struct Left {
     pub(super) triangles: Vec<[u32; 3]>,
     /// Numbers in the input.
     pub(super) numbers: Vec<u32>,
-    /// Positions of the part's vertices, in the unit of the input.
+    /// Positions of the part's vertices, in the unit of the input; zero for those that are not left.
     pub(super) positions: Vec<DVec3>,
     /// For each vertex, whether others were merged into it.
     pub(super) is_merged: Vec<bool>,
@@ -37,7 +37,7 @@ pub(super) struct RoundCheck<'c> {
     pub(super) first: Left,
     /// Where the triangles of each part begin in `first`.
     starts: Vec<usize>,
-    /// What parts leave that were done again.
+    /// What parts leave that were done again; their positions are in the readings.
     again: Vec<Option<Left>>,
     pub(super) readings: Vec<CoordinateReading>,
     /// There were more contacts than are kept.
@@ -68,11 +68,14 @@ impl<'c> RoundCheck<'c> {
             parts.iter().chain([&between]).fold((0, 0), |(triangles, vertices), left| {
                 (triangles + left.triangles.len() as u64, vertices + left.positions.len() as u64)
             });
-        // What is left, in parts and together, and for each reading positions and a hierarchy.
-        let of_left = 2 * (16 * triangles + 25 * vertices);
+        // What is left: as it was first, done again and together; and for each reading positions and a hierarchy.
+        let of_left = 3 * 16 * triangles + vertices;
         let of_reading = 24 * vertices + triangles * Bvh::BYTES_PER_TRIANGLE;
         let charge = budget.charge(of_left + roundings.len() as u64 * of_reading)?;
         let (mut first, mut starts) = (Left::default(), Vec::with_capacity(parts.len() + 1));
+        first.triangles.reserve_exact(triangles as usize);
+        first.numbers.reserve_exact(triangles as usize);
+        first.positions.reserve_exact(vertices as usize);
         let again = parts.iter().map(|_| None).collect();
         for part in parts.into_iter().chain([between]) {
             starts.push(first.triangles.len());
@@ -81,7 +84,7 @@ impl<'c> RoundCheck<'c> {
             first.positions.extend(part.positions);
             first.is_merged.extend(part.is_merged);
         }
-        let positions = std::mem::take(&mut first.positions);
+        let mut positions = std::mem::take(&mut first.positions);
         let mut check = Self {
             division,
             first,
@@ -92,8 +95,12 @@ impl<'c> RoundCheck<'c> {
             budget,
             _charge: charge,
         };
-        for &is_rounded in roundings {
-            let positions = if is_rounded { rounded(&positions) } else { positions.clone() };
+        for (r, &is_rounded) in roundings.iter().enumerate() {
+            let is_last = r + 1 == roundings.len();
+            let mut positions = if is_last { std::mem::take(&mut positions) } else { positions.clone() };
+            if is_rounded {
+                positions.iter_mut().for_each(|p| *p = round(*p));
+            }
             let with_area = with_area(&positions, &check.first.triangles, budget)?;
             let ids = (with_area.len() < check.first.triangles.len()).then_some(&with_area[..]);
             let bvh = Bvh::build(&positions, &check.first.triangles, ids, budget)?;
@@ -108,7 +115,7 @@ impl<'c> RoundCheck<'c> {
     }
 
     /// Replaces what a part leaves.
-    pub(super) fn replace(&mut self, part: usize, left: Left, roundings: &[bool]) {
+    pub(super) fn replace(&mut self, part: usize, mut left: Left, roundings: &[bool]) {
         let first = part * self.division.part_len;
         for (reading, &is_rounded) in self.readings.iter_mut().zip(roundings) {
             for (p, &position) in reading.positions[first..].iter_mut().zip(&left.positions) {
@@ -116,6 +123,7 @@ impl<'c> RoundCheck<'c> {
             }
         }
         self.first.is_merged[first..first + left.is_merged.len()].copy_from_slice(&left.is_merged);
+        (left.positions, left.is_merged) = (Vec::new(), Vec::new());
         self.again[part] = Some(left);
     }
 

@@ -15,6 +15,7 @@ mod guard;
 mod hubs;
 mod lines;
 mod mesh;
+mod outcome;
 mod part;
 mod region;
 mod rollback;
@@ -106,9 +107,9 @@ fn run<C: CollapseCriterion>(
     settings: Settings,
     budget: &Budget,
 ) -> Result<Vec<Simplified>, SimplifyError> {
-    // The components of the input, and what vertices were merged into.
-    let guarded = if settings.is_guarded { input.triangles.len() + input.positions.len() } else { 0 };
-    let _charge = budget.charge(bytes_of::<C>(input) + 4 * guarded as u64)?;
+    // The components of the input.
+    let guarded = if settings.is_guarded { 4 * input.triangles.len() } else { 0 };
+    let _charge = budget.charge(bytes_of::<C>(input) + guarded as u64)?;
     let mut rounds = Rounds::begin(input, options, criterion, settings, budget)?;
     let mut levels = Vec::with_capacity(options.targets.len());
     for &target in &options.targets {
@@ -128,11 +129,11 @@ fn run<C: CollapseCriterion>(
     Ok(levels)
 }
 
-/// What a run takes beside its input and its results: vertices before and in parts; triangles before and after they are
-/// sorted, in corner tables, and their places in the queue.
+/// What a run takes beside its input, its results and its rounds: vertices and their order; triangles before and after
+/// they are sorted.
 fn bytes_of<C: CollapseCriterion>(input: &SimplifyInput<'_>) -> u64 {
-    let per_triangle = 2 * (12 + 4 + 1) + 32 + 16;
-    let per_vertex = 2 * size_of::<super::surface::Vertex<C::State>>() + 4 + 8;
+    let per_triangle = 2 * (12 + 4 + 1);
+    let per_vertex = size_of::<super::surface::Vertex<C::State>>() + 4 + 8;
     let texture = 3 * size_of_val(input.texture);
     (input.triangles.len() * per_triangle + input.positions.len() * per_vertex + texture) as u64
 }

@@ -65,6 +65,13 @@ pub(super) struct Rules<'r, C> {
     pub(super) is_guarded: bool,
 }
 
+impl<C> Rules<'_, C> {
+    /// What a collapse sweeps must be free.
+    pub(super) fn is_watched(&self) -> bool {
+        self.is_guarded && self.options.sweeps
+    }
+}
+
 impl<C> Clone for Rules<'_, C> {
     fn clone(&self) -> Self {
         *self
@@ -317,11 +324,6 @@ impl<'r, C: CollapseCriterion> PartSimplifier<'r, C> {
                 }
             }
         }
-    }
-
-    /// Gives back what is only needed for collapses: none follows.
-    pub(super) fn leave_room(&mut self) {
-        self.watch = None;
     }
 
     /// For each vertex, the one that is left of it. Only for a part whose collapses may be taken back.

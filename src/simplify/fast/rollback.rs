@@ -10,10 +10,11 @@
 
 use super::check::{Left, RoundCheck, SurfaceCheck};
 use super::guard::{Guard, RoundConditions};
-use super::mesh::MeshDivision;
-use super::part::PartSimplifier;
+use super::mesh::{Mesh, MeshDivision};
+use super::outcome::PartOutcome;
 use super::rounds::Rounds;
 use crate::budget::Stopped;
+use crate::geom::DVec3;
 use crate::par;
 use crate::simplify::criterion::CollapseCriterion;
 use crate::simplify::report::SimplifyRefusal;
@@ -30,7 +31,7 @@ impl<'r, C: CollapseCriterion> Rounds<'r, C> {
         &self,
         guard: &mut Guard,
         division: &MeshDivision,
-        parts: &mut [PartSimplifier<'r, C>],
+        parts: &mut [PartOutcome<C::State>],
         course: &RoundConditions,
     ) -> Result<(), Stopped> {
         let left =
@@ -67,11 +68,17 @@ impl<'r, C: CollapseCriterion> Rounds<'r, C> {
     fn redo(
         &self,
         division: &MeshDivision,
-        parts: &mut [PartSimplifier<'r, C>],
+        parts: &mut [PartOutcome<C::State>],
         again: &[(usize, u64)],
         locked: &[bool],
         course: &RoundConditions,
     ) -> Result<(), Stopped> {
+        let bytes = |&(i, _): &(usize, u64)| {
+            let triangles = &self.mesh.triangles[division.starts[i]..division.starts[i + 1]];
+            self.bytes_of_parts(triangles, division.vertices(i).len())
+        };
+        // Of the largest: few are done at a time, and a part is small or the only one.
+        let _charge = self.budget.charge(again.iter().map(bytes).max().unwrap_or(0))?;
         let done = par::try_map_ranges(again.len(), 1, |range| {
             let i = again[range.start].0;
             let mut piece = self.piece(division, i)?;
@@ -79,8 +86,8 @@ impl<'r, C: CollapseCriterion> Rounds<'r, C> {
                 *is_free &= !is_locked;
             }
             let mut part = self.part(division, i, piece, &course.strays, course.is_first)?;
-            part.advance(course.class_max, parts[i].triangle_count(), self.budget)?;
-            Ok(part)
+            part.advance(course.class_max, parts[i].left.triangles.len(), self.budget)?;
+            Ok(self.outcome(division, i, &part))
         })?;
         for (&(i, _), mut part) in again.iter().zip(done) {
             part.tally.refusals.add_all(&parts[i].tally.refusals);
@@ -89,25 +96,23 @@ impl<'r, C: CollapseCriterion> Rounds<'r, C> {
         Ok(())
     }
 
-    /// What part `i` leaves.
-    fn left(&self, division: &MeshDivision, i: usize, part: &PartSimplifier<'r, C>) -> Left {
-        let (first_vertex, first_triangle) = ((i * division.part_len) as u32, division.starts[i]);
-        let mut left = Left::default();
-        for (t, corners, _) in part.triangles() {
-            left.triangles.push(corners.map(|v| v + first_vertex));
-            left.numbers.push(self.mesh.numbers[first_triangle + t as usize]);
-        }
-        left.positions = part
-            .surface
-            .vertices
-            .iter()
-            .map(|vertex| match vertex.origin {
+    /// What part `i` leaves, as it is looked at.
+    fn left(&self, division: &MeshDivision, i: usize, part: &PartOutcome<C::State>) -> Left {
+        let first = i * division.part_len;
+        let PartOutcome { left: Mesh { triangles, numbers, vertices, .. }, places, roots, .. } = part;
+        let mut left = Left {
+            triangles: triangles.clone(),
+            numbers: numbers.clone(),
+            positions: vec![DVec3::ZERO; roots.len()],
+            is_merged: vec![false; roots.len()],
+        };
+        for (&place, vertex) in places.iter().zip(vertices) {
+            left.positions[place as usize - first] = match vertex.origin {
                 NEW => vertex.position / self.frame.scale,
                 origin => self.input.positions[origin as usize],
-            })
-            .collect();
-        left.is_merged = vec![false; left.positions.len()];
-        for (v, root) in part.roots().into_iter().enumerate() {
+            };
+        }
+        for (v, &root) in roots.iter().enumerate() {
             left.is_merged[root as usize] |= v != root as usize;
         }
         left
@@ -126,9 +131,9 @@ impl<'r, C: CollapseCriterion> Rounds<'r, C> {
 
 /// Locks what was merged into the offenders; gives the parts in which it is, with the number of vertices. After
 /// some tries also what was merged into their neighbours, then those of these, and in the end all of a part.
-fn lock<C: CollapseCriterion>(
+fn lock<S>(
     division: &MeshDivision,
-    parts: &[PartSimplifier<'_, C>],
+    parts: &[PartOutcome<S>],
     offenders: &[u32],
     tries: usize,
     locked: &mut [bool],
@@ -138,18 +143,18 @@ fn lock<C: CollapseCriterion>(
         let i = own[0] as usize / division.part_len;
         let first = i * division.part_len;
         let part = &parts[i];
-        let mut is_meant = vec![tries > TRIES_MAX; part.surface.vertices.len()];
+        let mut is_meant = vec![tries > TRIES_MAX; part.roots.len()];
         own.iter().for_each(|&v| is_meant[v as usize - first] = true);
         for _ in 0..(tries - 1) / TRIES_TO_RING {
             let before = is_meant.clone();
-            for (_, corners, _) in part.triangles() {
-                if corners.iter().any(|&v| before[v as usize]) {
-                    corners.iter().for_each(|&v| is_meant[v as usize] = true);
+            for corners in &part.left.triangles {
+                if corners.iter().any(|&v| before[v as usize - first]) {
+                    corners.iter().for_each(|&v| is_meant[v as usize - first] = true);
                 }
             }
         }
         let mut count = 0;
-        for (v, root) in part.roots().into_iter().enumerate() {
+        for (v, &root) in part.roots.iter().enumerate() {
             if is_meant[root as usize] && !std::mem::replace(&mut locked[first + v], true) {
                 count += 1;
             }

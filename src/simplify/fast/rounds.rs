@@ -6,20 +6,21 @@ use super::fans::are_fans_between;
 use super::guard::{Guard, RoundConditions};
 use super::lines::LineMarking;
 use super::mesh::{Mesh, MeshDivision};
+use super::outcome::PartOutcome;
 use super::part::{GuardedRegion, PartSimplifier, PartTopology, Rules, Tally};
 use super::shells::ClosedShells;
 use super::space::PartBoxes;
 use super::strays::Strays;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, DVec3};
-use crate::mesh::corner_table::CornerTable;
+use crate::mesh::corner_table::{CornerTable, NONE};
 use crate::par;
 use crate::simplify::criterion::CollapseCriterion;
 use crate::simplify::marks::LINE;
 use crate::simplify::options::{SimplifyOptions, Target};
 use crate::simplify::priority::costs_of_vertices;
 use crate::simplify::result::{SimplifyError, SimplifyInput};
-use crate::simplify::surface::CollapseSurface;
+use crate::simplify::surface::{CollapseSurface, Vertex};
 use crate::spatial::Bvh;
 use std::sync::Arc;
 
@@ -153,6 +154,8 @@ impl<'r, C: CollapseCriterion> Rounds<'r, C> {
     /// Cuts the mesh in parts, collapses edges inside them, and puts what is left together.
     fn round(&mut self, part_len: usize, goal: usize) -> Result<(), SimplifyError> {
         let division = self.mesh.divide(part_len, self.shift(), self.budget)?;
+        let of_parts = self.bytes_of_parts(&self.mesh.triangles, division.order.len());
+        let of_parts = self.budget.charge(of_parts)?;
         let pieces = self.pieces(&division)?;
         let is_first = self.count == 0;
         self.count += 1;
@@ -160,30 +163,44 @@ impl<'r, C: CollapseCriterion> Rounds<'r, C> {
             self.mark_lines(&division, &pieces)?;
             self.prepare_between(&division)?;
         }
-        let strays = match self.rules.is_guarded && self.rules.options.sweeps {
+        let strays = match self.rules.is_watched() {
             true => Some(Arc::new(Strays::of(&self.mesh, &division, self.budget)?)),
             false => None,
         };
-        let of_boxes = if strays.is_some() { PartBoxes::bytes(&self.mesh.triangles) } else { 0 };
-        let of_strays = strays.as_ref().map_or(0, |strays| strays.bytes());
-        let charge = self.budget.charge(of_boxes + of_strays)?;
+        let _of_strays = self.budget.charge(strays.as_ref().map_or(0, |strays| strays.bytes()))?;
         let parts = par::map_items(pieces, |i, piece| self.part(&division, i, piece, &strays, is_first));
         let mut parts = parts.into_iter().collect::<Result<Vec<_>, Stopped>>()?;
         let between = self.mesh.triangles.len() - division.first_between();
         let class_max = advance(&mut parts, between, goal, self.budget)?;
-        parts.iter_mut().for_each(PartSimplifier::leave_room);
-        drop(charge);
+        let mut parts = par::map_items(parts, |i, part| self.outcome(&division, i, &part));
+        drop(of_parts);
+        let _of_outcomes = self.budget.charge(parts.iter().map(PartOutcome::bytes).sum())?;
         if let Some(mut guard) = self.guard.take() {
-            self.roll_back(
-                &mut guard,
-                &division,
-                &mut parts,
-                &RoundConditions { is_first, class_max, strays },
-            )?;
+            let conditions = RoundConditions { is_first, class_max, strays };
+            self.roll_back(&mut guard, &division, &mut parts, &conditions)?;
             self.guard = Some(guard);
         }
         self.collect(&division, parts);
         Ok(())
+    }
+
+    /// Bytes that parts with these triangles, and as many vertices, take while edges are collapsed.
+    pub(super) fn bytes_of_parts(&self, triangles: &[[u32; 3]], vertices: usize) -> u64 {
+        let of_boxes = if self.rules.is_watched() { PartBoxes::bytes(triangles) } else { 0 };
+        let of_merges = if self.rules.is_guarded { 4 } else { 0 };
+        let per_vertex = size_of::<Vertex<C::State>>() + of_merges;
+        // Triangles are in corner tables, with places in the queue.
+        of_boxes + (triangles.len() * (32 + 16) + vertices * per_vertex) as u64
+    }
+
+    /// What is left of part `i`.
+    pub(super) fn outcome(
+        &self,
+        division: &MeshDivision,
+        i: usize,
+        part: &PartSimplifier<'r, C>,
+    ) -> PartOutcome<C::State> {
+        PartOutcome::of(part, division, i, &self.mesh.numbers[division.starts[i]..])
     }
 
     /// Where the curve of a round begins: multiples of the powers of the reciprocal of the plastic number are spread
@@ -300,41 +317,43 @@ impl<'r, C: CollapseCriterion> Rounds<'r, C> {
     }
 
     /// Puts what is left of the parts together, and after it the triangles between them.
-    fn collect(&mut self, division: &MeshDivision, parts: Vec<PartSimplifier<'r, C>>) {
+    fn collect(&mut self, division: &MeshDivision, parts: Vec<PartOutcome<C::State>>) {
         // Not needed any more, and as large as what is made here.
         self.mesh.vertices = Vec::new();
-        let MeshDivision { part_len, ref order, ref starts, .. } = *division;
-        let vertices = par::map_indices(order.len(), CHECK_EVERY, |place| {
-            parts[place / part_len].surface.vertices[place % part_len]
-        });
-        let lists = par::map_ranges(parts.len(), 1, |range| {
-            let (i, part) = (range.start, &parts[range.start]);
-            let mut left = Mesh::<C::State>::default();
-            for (t, corners, lines) in part.triangles() {
-                left.triangles.push(corners.map(|v| v + (i * part_len) as u32));
-                left.numbers.push(self.mesh.numbers[starts[i] + t as usize]);
-                left.lines.push(lines);
-                left.texture.extend(part.surface.wedges.0.get(t as usize));
+        let mut renumbered = vec![NONE; division.order.len()];
+        let mut starts = Vec::with_capacity(parts.len());
+        let mut count = 0;
+        for part in &parts {
+            starts.push(count as usize);
+            for &place in &part.places {
+                renumbered[place as usize] = count;
+                count += 1;
             }
-            left
+        }
+        let vertices = par::map_indices(count as usize, CHECK_EVERY, |v| {
+            let part = starts.partition_point(|&start| start <= v) - 1;
+            parts[part].left.vertices[v - starts[part]]
         });
-        let count = lists.iter().map(|left| left.triangles.len()).sum::<usize>();
         let first = division.first_between();
+        let count = parts.iter().map(|part| part.left.triangles.len()).sum::<usize>();
         let mut left = Mesh { vertices, ..Mesh::default() };
         left.triangles.reserve_exact(count + self.mesh.triangles.len() - first);
         left.numbers.reserve_exact(count + self.mesh.triangles.len() - first);
-        for (part, mut list) in parts.into_iter().zip(lists) {
+        for part in parts {
             self.tally.add(&part.tally);
-            left.colors.extend(part.colors);
-            left.triangles.append(&mut list.triangles);
-            left.numbers.append(&mut list.numbers);
-            left.lines.append(&mut list.lines);
-            left.texture.append(&mut list.texture);
+            left.colors.extend(part.left.colors);
+            left.triangles.extend(part.left.triangles);
+            left.numbers.extend(part.left.numbers);
+            left.lines.extend(part.left.lines);
+            left.texture.extend(part.left.texture);
         }
         left.triangles.extend(&self.mesh.triangles[first..]);
         left.numbers.extend(&self.mesh.numbers[first..]);
         left.lines.extend(&self.mesh.lines[first..]);
         left.texture.extend(self.mesh.texture.get(first..).unwrap_or_default());
+        par::for_each_chunk_mut(&mut left.triangles, CHECK_EVERY, |_, triangles| {
+            triangles.as_flattened_mut().iter_mut().for_each(|v| *v = renumbered[*v as usize]);
+        });
         self.mesh = left;
     }
 }
